@@ -373,3 +373,73 @@ def test_the_form_of_the_text_is_repeated(tmp_path):
     ingest([path.parent], tmp_path / "work", IngestSettings(map_file=suggested))
     samples = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
     np.testing.assert_allclose(samples["time"], log[TIME] - log[TIME].iloc[0], atol=1e-9)
+
+
+def named_log(folder, **columns):
+    """Write a log of a clean joint; each column is made of its position, velocity and torque."""
+    log = clean_log(3, period=0.01)
+    position, velocity, torque = (log[name].to_numpy() for name in (POSITION, VELOCITY, TORQUE))
+    made = {name: make(position, velocity, torque) for name, make in columns.items()}
+    pd.DataFrame({"t_ms": np.arange(len(log)) * 10, **made}).to_csv(folder / "log.csv", index=False)
+    return folder / "log.csv"
+
+
+def test_a_speed_is_no_torque_and_counts_need_their_size(tmp_path):
+    """A motor with an encoder and a PWM: nothing measures its torque."""
+    path = named_log(
+        tmp_path,
+        pwm=lambda q, v, tau: np.round(20 * tau),
+        enc_count=lambda q, v, tau: np.round(q * 100),
+        speed_rpm=lambda q, v, tau: v / 6,
+    )
+    text = suggested_map([path], IngestSettings())
+    assert "torque" not in tomllib.loads(text)["channels"]
+    assert tomllib.loads(text)["scale"] == {"position": 0}
+
+
+@pytest.mark.parametrize("name", ["tau_cmd", "tau_ext", "TorqueRef"])
+def test_a_torque_that_was_not_measured_is_a_guess(name, tmp_path):
+    path = named_log(
+        tmp_path,
+        q=lambda q, v, tau: q,
+        qd=lambda q, v, tau: v,
+        **{name: lambda q, v, tau: tau},
+    )
+    text = suggested_map([path], IngestSettings())
+    assert tomllib.loads(text)["channels"]["torque"] == name
+    (reason,) = (one for one in text.splitlines() if "by its name: name the measured one" in one)
+    assert reason.startswith("# a guess: ")
+
+
+def test_a_measured_torque_goes_before_a_commanded_one(tmp_path):
+    path = named_log(
+        tmp_path,
+        q=lambda q, v, tau: q,
+        tau_cmd=lambda q, v, tau: tau + 0.01 * np.arange(len(q)) % 2,
+        tau_cor=lambda q, v, tau: tau,
+    )
+    text = suggested_map([path], IngestSettings())
+    assert tomllib.loads(text)["channels"]["torque"] == "tau_cor"
+
+
+def test_temperatures_are_no_motion(tmp_path):
+    path = named_log(
+        tmp_path,
+        temp_mos=lambda q, v, tau: 30 + q / 100,
+        temp_mos_rate=lambda q, v, tau: v / 100,
+        current=lambda q, v, tau: tau,
+    )
+    with pytest.raises(LogError, match="no column looks like a joint's position"):
+        suggested_map([path], IngestSettings())
+
+
+def test_beside_a_torque_without_friction_others_are_named(tmp_path):
+    path = named_log(
+        tmp_path,
+        q=lambda q, v, tau: q,
+        qd=lambda q, v, tau: v,
+        tau=lambda q, v, tau: 10 * np.cos(np.radians(q)),
+        motorwert=lambda q, v, tau: tau,
+    )
+    text = suggested_map([path], IngestSettings())
+    assert '# torque = "motorwert"' in text

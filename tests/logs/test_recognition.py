@@ -44,6 +44,18 @@ from .logs import back_and_forth, kuka_columns, write
         ("T_housing [°C]", "housing_temperature", None, "joint"),
         ("Gehäusetemperatur [°C]", "housing_temperature", None, "joint"),
         ("housing_temperature_3", "housing_temperature", 3, "joint"),
+        ("present_position", "position", None, "joint"),
+        ("q_msr2", "position", 2, "joint"),
+        ("MsrTorque_A2", "torque", 2, "joint"),
+        ("instCurrent_3", "torque", 3, "motor"),
+        ("actual_current_as_torque_0", "torque", 1, "joint"),
+        ("actuator2.position", "position", 2, "joint"),
+        ("field.effort1", "torque", 1, "joint"),
+        ("cur (A)", "torque", None, "motor"),
+        ("FeedbackSpeed[min-1]", "velocity", None, "joint"),
+        ("ExtTorque_A2", None, None, None),
+        ("tau_ext_2", None, None, None),
+        ("TorqueReference[%]", None, None, None),
         ("AxisPos_CmdIpo2[°]", None, None, None),
         ("Sollposition[°]", None, None, None),
         ("DriveMotorTorq_Cmd2[Nm]", None, None, None),
@@ -122,6 +134,9 @@ def test_a_temperature_of_unknown_name_is_not_left_out_in_silence(column):
         ("SPEED_DEG_PER_SEC", "velocity", None, "deg/s"),
         ("omega_radps", "velocity", None, "rad/s"),
         ("Winkel in Grad", "position", None, "deg"),
+        ("velocity_rev_s", "velocity", None, "turn/s"),
+        ("position_rot", "position", None, "turn"),
+        ("Joint 2 Torque (% rated)", "torque", 2, "%"),
         ("t_s", "time", None, "s"),
         ("T1_C", "motor_temperature", 1, "°C"),
         ("T_K", "motor_temperature", None, "K"),
@@ -197,6 +212,62 @@ def test_a_current_in_ampere_is_not_that_of_a_phase(columns, unit):
 def test_names_in_other_languages(columns):
     found = [channel.quantity for channel in recognise_channels(columns)]
     assert found == ["time", "position", "velocity", "motor_temperature"]
+
+
+@pytest.mark.parametrize(
+    ("columns", "clock"),
+    [
+        (["sim_time", "q1", "tau1"], "sim_time"),
+        (["experiment_time_sec", "q1", "tau1"], "experiment_time_sec"),
+        (["solve_time", "cycleTime_ms", "q1", "tau1"], None),
+        (["t", "sim_time", "q1", "tau1"], "t"),
+    ],
+)
+def test_a_clock_is_known_by_its_last_word_where_there_is_no_other_time(columns, clock):
+    times = [c.name for c in recognise_channels(columns) if c.quantity == "time"]
+    assert times == ([] if clock is None else [clock])
+
+
+@pytest.mark.parametrize(
+    ("columns", "currents"),
+    [
+        (["t", "q0", "q1", "i0", "i1"], 2),
+        (["t", "q0", "q1", "i0"], 0),
+        (["i", "t", "q", "x1"], 0),
+        (["t", "q0", "q1", "i0", "i1", "tau0", "tau1"], 0),
+    ],
+)
+def test_i_with_a_number_is_a_current_where_every_joint_has_one(columns, currents):
+    found = [c for c in recognise_channels(columns) if c.quantity == "torque" and c.family == "i"]
+    assert len(found) == currents
+
+
+def quadruped(*joints):
+    return ["t", *(f"{joint}_{what}" for joint in joints for what in ("q", "dq", "tauEst"))]
+
+
+@pytest.mark.parametrize(
+    ("columns", "joints"),
+    [
+        (quadruped("FR_0", "FR_1", "FR_2"), ["FR_0", "FR_1", "FR_2"]),
+        (quadruped("LF_HAA", "LF_HFE", "LF_KFE", "base"), ["LF_HAA", "LF_HFE", "LF_KFE", "base"]),
+        (quadruped("FR_0", "FR_1"), []),
+        (
+            ["t", *(f"{what}_{kind}" for kind in ("des", "meas", "err") for what in ("q", "tau"))],
+            [],
+        ),
+    ],
+)
+def test_three_joints_with_position_and_torque_may_have_any_names(columns, joints):
+    """Two may be the sides of a gear; words that say what kind of value it is are no joints."""
+    found = recognise_channels(columns)
+    assert list(dict.fromkeys(c.joint_name for c in found if c.joint_name)) == joints
+
+
+def test_sensors_with_numbers_do_not_hide_joints_with_names():
+    columns = [*quadruped("SP", "SR", "elbow"), "theta_1", "fx_1"]
+    found = recognise_channels(columns)
+    assert {c.joint_name for c in found if c.quantity == "torque"} == {"SP", "SR", "elbow"}
 
 
 def test_a_log_of_one_joint_with_a_name():

@@ -7,13 +7,16 @@ from dataclasses import dataclass
 
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.measured_or_commanded import is_command
-from frictioncli.inspection.map_suggestion.telling_names import said_quantity
+from frictioncli.inspection.map_suggestion.telling_names import may_mean
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.column_name import split_unit
 from frictioncli.logs.channels.recognition import LogChannel, recognise_channels
 
 SURE, LIKELY, GUESS = "sure", "likely", "a guess"
+
+COUNT = "count"
+"""Unit of a column that counts, whose size the user has to give."""
 
 MAX_ALTERNATIVES = 4
 """Most alternatives that are named for a quantity."""
@@ -85,7 +88,7 @@ class LogColumns:
         """Return whether a column's name does not say that it is another quantity."""
         channel = self.recognised.get(column)
         if channel is None:
-            return said_quantity(self.head.names[column]) in (None, quantity)
+            return may_mean(self.head.names[column], quantity)
         return channel.quantity == quantity
 
     def no_torque(self) -> frozenset[int]:

@@ -3,7 +3,7 @@
 import json
 from dataclasses import asdict
 
-from frictioncli.inspection.map_suggestion.columns import ColumnGuess
+from frictioncli.inspection.map_suggestion.columns import COUNT, ColumnGuess
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.suggestion import Suggestion
 from frictioncli.inspection.map_suggestion.telling_names import is_counted
@@ -69,14 +69,10 @@ def map_text(
         if quantity == names.TORQUE and not split_unit(head.names[guess.column])[1]:
             doubt = "  # by name only, the values do not show it: N·m, or A if it is a current"
         unit = guess.unit
-        if is_counted(head.names[guess.column]):
+        if _counts(guess, head):
             unit = next(iter(units.FACTORS[quantity]))
         lines.append(f'{quantity} = "{unit}"{doubt}')
-    counted = [
-        quantity
-        for quantity, guess in suggestion.guesses.items()
-        if is_counted(head.names[guess.column])
-    ]
+    counted = [quantity for quantity, guess in suggestion.guesses.items() if _counts(guess, head)]
     if counted:
         lines += ["", "[scale]"]
         lines += [f"{quantity} = 0  # fill in: {_PER_COUNT[quantity]}" for quantity in counted]
@@ -103,6 +99,10 @@ def _channel_lines(quantity: str, guess: ColumnGuess, head: LogHead) -> list[str
             for column, reason in guess.alternatives
         ),
     ]
+
+
+def _counts(guess: ColumnGuess, head: LogHead) -> bool:
+    return guess.unit == COUNT or is_counted(head.names[guess.column])
 
 
 def _quoted(name: str) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.errors import NotEnoughData
 from frictioncli.inspection.map_suggestion.columns import (
+    COUNT,
     GUESS,
     LIKELY,
     SURE,
@@ -27,6 +28,7 @@ from frictioncli.logs.channels import position_units, units
 from frictioncli.logs.channels.column_name import unit_in_name
 
 _ACCELERATION = re.compile(r"acc|beschl", re.I)
+_TWO_TURNS = 720.0  # [deg]
 _SURE_COSINE = 0.999
 _MAX_UNEVENNESS = 0.05
 """Largest unevenness of a position that no velocity confirms."""
@@ -181,6 +183,14 @@ def _by_position(
         unit, unit_reason = written, ""
     elif position_units.wraps_as_of_mit_protocol([values]):
         unit, unit_reason = "rad", "wraps at ±12.5, as motors of the MIT protocol log rad"
+    counts = (
+        written is None
+        and unit == "deg"
+        and largest > _TWO_TURNS
+        and position_units.are_whole([values])
+    )
+    if counts:
+        unit_reason = f"holds whole numbers up to {largest:.4g}, as counts are"
     time_unit = possible_time_units(time)[-1]
     degrees = values * units.FACTORS[names.POSITION][unit]
     seconds = columns.head.values[time.column] * units.FACTORS[names.TIME][time_unit]
@@ -206,7 +216,7 @@ def _by_position(
             column,
             f"{reason}; {unit_reason}" if unit_reason else reason,
             LIKELY if named else GUESS,
-            unit,
+            COUNT if counts else unit,
             columns.alternatives(others, "is the next candidate"),
         ),
         velocity=velocity,

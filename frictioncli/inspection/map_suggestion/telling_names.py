@@ -9,6 +9,9 @@ from frictioncli.logs.channels.column_name import split_unit
 OTHER = "other"
 """A quantity that no mapping file names."""
 
+MOTION = "motion"
+"""Position or velocity."""
+
 _WORD = re.compile(r"[A-Z]?[a-zäöü]+|[A-Z]+(?![a-z])")
 _COUNT = re.compile(r"counts?|cnts?|ticks?|puls\w*|incr?|increments?", re.I)
 _SAID = (
@@ -20,7 +23,8 @@ _SAID = (
     (names.MOTOR_TEMPERATURE, r"temps?|temperatur\w*|thermistor|celsius|kelvin"),
     (names.TORQUE, r"torq\w*|tau|effort|moment|drehmoment|trq|curr|current\w*|strom|iq|amps?"),
     (names.VELOCITY, r"vel|velo|velocit\w*|speed|e?rpm|omega|geschwindigkeit|dq|qd|qdot"),
-    (names.POSITION, r"pos|position\w*|angles?|winkel|enc|encoder|tacho\w*"),
+    (names.POSITION, r"pos|position\w*|angles?|winkel"),
+    (MOTION, r"enc|encoder|tacho\w*"),
     (names.TIME, r"time|timestamp|zeit|millis|micros"),
 )
 _WORDS = tuple((quantity, re.compile(pattern, re.I)) for quantity, pattern in _SAID)
@@ -41,6 +45,20 @@ def said_quantity(name: str) -> str | None:
         if any(pattern.fullmatch(word) for word in words):
             return quantity
     return None
+
+
+def may_mean(name: str, quantity: str) -> bool:
+    """Return whether the words of a name allow it to be a quantity.
+
+    Examples
+    --------
+    >>> may_mean("enc_b", "velocity"), may_mean("rpm", "torque"), may_mean("c2", "torque")
+    (True, False, True)
+    """
+    said = said_quantity(name)
+    if said == MOTION:
+        return quantity in (names.POSITION, names.VELOCITY)
+    return said in (None, quantity)
 
 
 def is_counted(name: str) -> bool:

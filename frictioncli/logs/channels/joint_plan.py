@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frictioncli.arrays import Array
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import position_units, units
 from frictioncli.logs.channels.joint_channels import JointChannels
@@ -17,6 +18,9 @@ from frictioncli.logs.channels.transmission import Transmission, find_transmissi
 from frictioncli.logs.channels.units import UnitConversion
 from frictioncli.logs.log_source import Refusal
 
+_MOST_AMPERES = 200.0
+"""Currents of a robot's motors stay below. [A]"""
+_ALL_BUT_OUTLIERS = 0.99
 _OF_RATED = ("%", "‰")
 """Units of torque relative to the rated torque."""
 
@@ -97,7 +101,7 @@ def plan_joint(
             f"torque of joint {channels.joint}: {channels.torque.name} {state}; name another"
             " column with --map",
         )
-    torque_unit = _torque_unit(channels.torque, forced, remarks)
+    torque_unit = _torque_unit(channels.torque, torque_values, forced, remarks)
     if channels.position.name == names.INTEGRATED:
         remarks.notes.append(
             "no position: it is the integral of velocity, from 0 in each log; moves are paired by"
@@ -201,7 +205,9 @@ def _scaled(conversion: UnitConversion, factor: float) -> UnitConversion:
     )
 
 
-def _torque_unit(channel: LogChannel, forced: Mapping[str, str], remarks: Remarks) -> str:
+def _torque_unit(
+    channel: LogChannel, values: Array, forced: Mapping[str, str], remarks: Remarks
+) -> str:
     if names.TORQUE in forced:
         return forced[names.TORQUE]
     written = channel.unit or channel.meaning.unit
@@ -211,6 +217,14 @@ def _torque_unit(channel: LogChannel, forced: Mapping[str, str], remarks: Remark
             f"{channel.name} is in percent, and so is every torque-like result; with"
             " --rated-torque they are in N·m"
         )
+    if unit == "A" and not channel.unit and len(values):
+        largest = float(np.quantile(np.abs(values), _ALL_BUT_OUTLIERS))
+        if largest > _MOST_AMPERES:
+            remarks.warnings.append(
+                f"{channel.name} has no unit and reaches {largest:.4g}, much for a motor's current"
+                " in A: if it is in mA, say so with --torque-unit mA; if it counts, give the size"
+                " of a count with [scale] torque in --map"
+            )
     if unit is None:
         unit = "N·m"
         if written:

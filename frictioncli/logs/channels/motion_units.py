@@ -3,15 +3,16 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
+from frictioncli.arrays import Array
 from frictioncli.logs.channels import channel_names as names
-from frictioncli.logs.channels import position_units, unit_evidence, units
+from frictioncli.logs.channels import position_units, surveyed_motion, unit_evidence, units
 from frictioncli.logs.channels.joint_channels import JointChannels
 from frictioncli.logs.channels.position_units import wraps_as_of_mit_protocol
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.survey import Survey
-from frictioncli.logs.channels.unit_evidence import MotionUnits, RawMotion
+from frictioncli.logs.channels.unit_evidence import MotionUnits
+
+_TWO_TURNS = 720.0  # [deg]
 
 
 @dataclass(slots=True)
@@ -103,14 +104,14 @@ def _axis_units(
     """
     position = axis.position
     family = survey.family(position)
-    largest, span = _position_range(survey, axis.time, family)
+    largest, span = surveyed_motion.position_range(survey, axis.time, family)
     on_motor = position.meaning.side == names.MOTOR_SIDE
     usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=on_motor)
     possible, why = position_units.possible_position_units(
         largest=largest,
         span=span,
         on_motor=on_motor,
-        path_per_angle=_tool_path_per_angle(survey, family),
+        path_per_angle=surveyed_motion.tool_path_per_angle(survey, family),
     )
     if position.name == names.INTEGRATED:  # in deg by construction, however far it goes
         possible, why = frozenset({"deg"}), ""
@@ -130,9 +131,11 @@ def _axis_units(
     declared_velocity = forced.get(names.VELOCITY)
     ratio = None
     if axis.velocity is not None:
-        written = units.canonical(axis.velocity.unit, names.VELOCITY)
+        written = _written_unit(axis.velocity)
         declared_velocity = declared_velocity or written
-        ratio = unit_evidence.motion_ratio(_motions(survey, axis.time, position, axis.velocity))
+        ratio = unit_evidence.motion_ratio(
+            surveyed_motion.motions(survey, axis.time, position, axis.velocity)
+        )
     headers = {declared_position, declared_velocity}
     says_radians = headers != {None} and headers <= {None, "rad", "rad/s"}
     if says_radians and ratio is not None and possible == {"deg"} and names.POSITION not in forced:
@@ -150,17 +153,33 @@ def _axis_units(
         usual=usual,
     )
     if (declared_position, declared_velocity) == (None, None) and wraps_as_of_mit_protocol(
-        [motion.position for motion in _motions_of(survey, axis.time, family)]
+        [motion.position for motion in surveyed_motion.motions_of(survey, axis.time, family)]
     ):
         found = _mit_units(axis, found, remarks)
         why = "it wraps at ±12.5, as positions of the MIT motor protocol do"
     velocity_tells = bool(found.evidence) and found.velocity is not None
     is_open = len(allowed) > 1 and usual == "rad" and not velocity_tells
     doubt = _doubt(axis.position, why) if is_open and declared_position == "deg" else ""
-    if names.POSITION not in forced and units.is_count(position.unit):
-        doubt = _COUNTED.format(name=position.name)
+    if names.POSITION not in forced:
+        motions = surveyed_motion.motions_of(survey, axis.time, [position])
+        if units.is_count(position.unit):
+            doubt = _COUNTED.format(name=f"{position.name} counts pulses")
+        elif found.position == "deg" and _may_count(
+            position, [motion.position for motion in motions], largest
+        ):
+            text = f"{position.name} has no unit and holds whole numbers up to {largest:.4g}"
+            if axis.velocity is not None and found.velocity is None:
+                text += f", and {found.evidence}"
+                doubt = _COUNTED.format(name=f"{text}: counts?") + "; or --position-unit deg"
+            else:
+                remarks.warnings.append(
+                    f"{text}: read as deg; if it counts, give the size of a count with [scale]"
+                    " position in --map"
+                )
     found = _with_forced_units(found, forced, remarks)
-    _remark_position(axis, found, why, forced, remarks)
+    # an arm with joints that turn further than a turn in rad is logged in deg
+    is_one_of_many = len({c.joint for c in survey.channels if c.quantity == names.POSITION}) > 1
+    _remark_position(axis, found, why, 0.0 if is_one_of_many else largest, forced, remarks)
     if axis.velocity is not None:
         _remark_velocity(axis.velocity, found, forced, remarks)
     return found, largest, doubt
@@ -176,10 +195,12 @@ def _mit_units(axis: _Axis, found: MotionUnits, remarks: Remarks) -> MotionUnits
     return replace(found, position="rad", velocity="rad/s", evidence="")
 
 
-_COUNTED = (
-    "{name} counts pulses; give the angle of one pulse in deg with --map, as"
-    " [scale] position = 0.0879"
-)
+_COUNTED = "{name}; give the angle of one pulse in deg with --map, as [scale] position = 0.0879"
+
+
+def _may_count(position: LogChannel, values: list[Array], largest: float) -> bool:
+    """Return whether a position without unit may be counts: whole numbers beyond two turns."""
+    return not position.unit and largest > _TWO_TURNS and position_units.are_whole(values)
 
 
 def _doubt(position: LogChannel, why: str) -> str:
@@ -212,6 +233,7 @@ def _remark_position(
     axis: _Axis,
     found: MotionUnits,
     why: str,
+    largest: float,
     forced: Mapping[str, str],
     remarks: Remarks,
 ) -> None:
@@ -226,6 +248,7 @@ def _remark_position(
         )
         return
     if written is None and found.position == "deg":
+        _warn_of_turns(axis, found, largest, remarks)
         return
     says = f"says {position.unit}" if position.unit else "has no unit"
     other = "rad" if found.position == "deg" else "deg"
@@ -235,10 +258,27 @@ def _remark_position(
     )
 
 
+def _warn_of_turns(axis: _Axis, found: MotionUnits, largest: float, remarks: Remarks) -> None:
+    """Warn of a position that goes beyond a turn in rad, and that nothing shows to be in deg."""
+    tells = axis.velocity is not None and (
+        _written_unit(axis.velocity) or found.velocity != "deg/s"
+    )
+    if largest <= position_units.RADIAN_LIMIT or tells or axis.position.name == names.INTEGRATED:
+        return
+    remarks.warnings.append(
+        f"{axis.position.name} has no unit and reaches {largest:.4g}: read as deg; if it is the"
+        " angle in rad of a motor that turns on, say so with --position-unit rad"
+    )
+
+
+def _written_unit(velocity: LogChannel) -> str | None:
+    return units.canonical(velocity.unit or velocity.meaning.unit, names.VELOCITY)
+
+
 def _remark_velocity(
     velocity: LogChannel, found: MotionUnits, forced: Mapping[str, str], remarks: Remarks
 ) -> None:
-    written = units.canonical(velocity.unit, names.VELOCITY)
+    written = _written_unit(velocity)
     if velocity.unit and written is None and names.VELOCITY not in forced and not found.evidence:
         remarks.warnings.append(
             f"{velocity.name}: unit {velocity.unit!r} is not known, taken as {found.velocity};"
@@ -256,51 +296,3 @@ def _remark_velocity(
         remarks.warnings.append(
             f"{velocity.name} has the sign opposite to the change of position: sign reversed"
         )
-
-
-def _position_range(
-    survey: Survey, time: LogChannel, family: list[LogChannel]
-) -> tuple[float, float]:
-    """Return the largest absolute position and the largest range of positions that share a unit."""
-    columns = (time.column, *(member.column for member in family))
-    if columns not in survey.position_ranges:
-        motions = _motions_of(survey, time, family)
-        survey.position_ranges[columns] = position_units.position_range(motions)
-    return survey.position_ranges[columns]
-
-
-def _motions_of(survey: Survey, time: LogChannel, family: list[LogChannel]) -> list[RawMotion]:
-    """Return the surveyed positions of some axes in each log."""
-    return [motion for member in family for motion in _motions(survey, time, member, None)]
-
-
-def _motions(
-    survey: Survey, time: LogChannel, position: LogChannel, velocity: LogChannel | None
-) -> list[RawMotion]:
-    """Return the surveyed motion of an axis in each log, without rows that lack a value."""
-    motions = []
-    for head in survey.heads:
-        good = np.isfinite(head[position.column])
-        rate = np.empty(0)
-        if velocity is not None:
-            good = good & np.isfinite(head[velocity.column])
-            rate = head[velocity.column][good]
-        motions.append(RawMotion(head[time.column][good], head[position.column][good], rate))
-    return motions
-
-
-def _tool_path_per_angle(survey: Survey, family: list[LogChannel]) -> float | None:
-    """Return the tool's path per angle of the moving axis, median over the logs [mm/raw]."""
-    tool = survey.tool()
-    if not tool:
-        return None
-    scale = 1000.0 if all(c.unit.strip() == "m" for c in tool) else 1.0
-    found = []
-    for head in survey.heads:
-        points = scale * np.stack([head[c.column] for c in tool], axis=1)
-        axes = np.stack([head[c.column] for c in family], axis=1)
-        good = np.isfinite(points).all(axis=1) & np.isfinite(axes).all(axis=1)
-        ratio = position_units.tool_path_per_angle(points[good], axes[good])
-        if ratio is not None:
-            found.append(ratio)
-    return float(np.median(found)) if found else None

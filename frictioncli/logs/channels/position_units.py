@@ -156,6 +156,24 @@ def usual_position_unit(*, largest: float, span: float, on_motor: bool) -> str:
     return "rad" if in_turn and span > _LEAST_SPAN else "deg"
 
 
+def are_whole(positions: Sequence[Array]) -> bool:
+    """Return whether positions are whole numbers only, as counts of an encoder are.
+
+    Parameters
+    ----------
+    positions : sequence of ndarray, shape (n,)
+        Positions of each log. [raw]
+
+    Examples
+    --------
+    >>> are_whole([np.array([2048.0, 2050.0])]), are_whole([np.array([12.0, 12.5])])
+    (True, False)
+    """
+    return any(len(one) for one in positions) and all(
+        bool(np.all(one == np.round(one))) for one in positions
+    )
+
+
 def wraps_as_of_mit_protocol(positions: Sequence[Array]) -> bool:
     """Return whether a position jumps between the ends of ±12.5, the range of the MIT protocol.
 

@@ -180,12 +180,11 @@ def _checked(channels: JointChannels, survey: Survey) -> JointChannels:
 
 def _why(channels: JointChannels, survey: Survey) -> str:
     """Return why a torque may bear no friction."""
-    values = survey.pooled(channels.torque)
-    if np.all(values >= 0):
-        return "it is never negative: if it is a magnitude without direction, it shows no friction"
+    size = "is a magnitude without direction, as it is never negative, or "
+    positive = bool(np.all(survey.pooled(channels.torque) >= 0))
     return (
-        "if a sensor behind the gear measures it, or the controller has removed friction, name a"
-        " motor's torque or current with --map"
+        f"if it {size * positive}comes from a sensor behind the gear, or has been freed of friction"
+        " by the controller, name a motor's torque or current with --map"
     )
 
 

@@ -132,7 +132,8 @@ def _integral(time: Array, rate: Array, last: tuple[float, float]) -> Array:
 def scale_to_degrees(time: LogChannel, velocity: LogChannel, forced: dict[str, str]) -> float:
     """Return the factor from velocity times time to deg, by the units forced or in the header."""
     seconds = forced.get(names.TIME) or units.canonical(time.unit or time.meaning.unit, names.TIME)
-    rate = forced.get(names.VELOCITY) or units.canonical(velocity.unit, names.VELOCITY)
+    written = units.canonical(velocity.unit or velocity.meaning.unit, names.VELOCITY)
+    rate = forced.get(names.VELOCITY) or written
     return (
         units.FACTORS[names.TIME][seconds or "s"] * units.FACTORS[names.VELOCITY][rate or "deg/s"]
     )

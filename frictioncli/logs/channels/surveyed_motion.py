@@ -1,0 +1,105 @@
+"""The motion of axes in the first rows of logs, from which units are inferred."""
+
+import numpy as np
+
+from frictioncli.logs.channels import position_units
+from frictioncli.logs.channels.recognition import LogChannel
+from frictioncli.logs.channels.survey import Survey
+from frictioncli.logs.channels.unit_evidence import RawMotion
+
+
+def position_range(
+    survey: Survey, time: LogChannel, family: list[LogChannel]
+) -> tuple[float, float]:
+    """Return the largest absolute position and the largest range of positions that share a unit.
+
+    Parameters
+    ----------
+    survey : Survey
+        Raw samples.
+    time : LogChannel
+        The time.
+    family : list of LogChannel
+        The positions.
+
+    Returns
+    -------
+    largest, span : float
+        As of :func:`frictioncli.logs.channels.position_units.position_range`. [raw]
+    """
+    columns = (time.column, *(member.column for member in family))
+    if columns not in survey.position_ranges:
+        survey.position_ranges[columns] = position_units.position_range(
+            motions_of(survey, time, family)
+        )
+    return survey.position_ranges[columns]
+
+
+def motions_of(survey: Survey, time: LogChannel, family: list[LogChannel]) -> list[RawMotion]:
+    """Return the surveyed positions of some axes in each log.
+
+    Parameters
+    ----------
+    survey : Survey
+        Raw samples.
+    time : LogChannel
+        The time.
+    family : list of LogChannel
+        The positions.
+    """
+    return [motion for member in family for motion in motions(survey, time, member, None)]
+
+
+def motions(
+    survey: Survey, time: LogChannel, position: LogChannel, velocity: LogChannel | None
+) -> list[RawMotion]:
+    """Return the surveyed motion of an axis in each log, without rows that lack a value.
+
+    Parameters
+    ----------
+    survey : Survey
+        Raw samples.
+    time, position : LogChannel
+        The time, and the position of the axis.
+    velocity : LogChannel or None
+        Its velocity; none is returned where it is None.
+    """
+    found = []
+    for head in survey.heads:
+        good = np.isfinite(head[position.column])
+        rate = np.empty(0)
+        if velocity is not None:
+            good = good & np.isfinite(head[velocity.column])
+            rate = head[velocity.column][good]
+        found.append(RawMotion(head[time.column][good], head[position.column][good], rate))
+    return found
+
+
+def tool_path_per_angle(survey: Survey, family: list[LogChannel]) -> float | None:
+    """Return the tool's path per angle of the moving axis, median over the logs.
+
+    Parameters
+    ----------
+    survey : Survey
+        Raw samples.
+    family : list of LogChannel
+        The positions of all axes.
+
+    Returns
+    -------
+    float or None
+        None where the tool's position is not logged, or nothing moves. [mm/raw]
+    """
+    tool = survey.tool()
+    if not tool:
+        return None
+    scale = 1000.0 if all(c.unit.strip() == "m" for c in tool) else 1.0
+    found = []
+    for head in survey.heads:
+        points = scale * np.stack([head[c.column] for c in tool], axis=1)
+        axes = np.stack([head[c.column] for c in family], axis=1)
+        good = np.isfinite(points).all(axis=1) & np.isfinite(axes).all(axis=1)
+        ratio = position_units.tool_path_per_angle(points[good], axes[good])
+        if ratio is not None:
+            found.append(ratio)
+    return float(np.median(found)) if found else None

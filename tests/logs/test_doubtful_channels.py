@@ -1,0 +1,127 @@
+"""Channels that are read, and of which the values say that they may be something else."""
+
+import numpy as np
+import pytest
+
+from frictioncli import schemas, tables
+from frictioncli.errors import LogError
+from frictioncli.logs.ingest import IngestSettings, ingest
+
+from .logs import back_and_forth, write
+
+
+def swings(seed=0):
+    """Return time [s], position [deg], gravity and friction [N·m] of a joint that swings."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(0.0, 60.0, 0.02)
+    position = 60 * np.sin(2 * np.pi * time / 12)
+    sign = np.sign(np.cos(2 * np.pi * time / 12))
+    gravity = 30 * np.cos(np.radians(position)) + rng.normal(0, 0.05, len(time))
+    return time, position, gravity, 4.0 * sign + rng.normal(0, 0.05, len(time))
+
+
+def warnings_of(folder, columns, settings=None):
+    log = write(folder / "log.csv", columns)
+    return ingest([log], folder / "work", settings or IngestSettings()).warnings
+
+
+def test_a_torque_behind_the_gear_shows_no_friction(tmp_path):
+    time, position, gravity, _ = swings()
+    (warning,) = warnings_of(tmp_path, {"t": time, "q_deg": position, "tau_Nm": gravity})
+    assert "tau_Nm, hardly shows friction" in warning
+    assert "sensor behind the gear" in warning
+
+
+def test_a_torque_with_friction_passes(tmp_path):
+    time, position, gravity, friction = swings()
+    columns = {"t": time, "q_deg": position, "tau_Nm": gravity + friction}
+    assert warnings_of(tmp_path, columns) == ()
+
+
+def test_a_current_without_direction_shows_no_friction(tmp_path):
+    time, position, _, friction = swings()
+    columns = {"t": time, "q_deg": position, "current": np.abs(friction)}
+    (warning,) = warnings_of(tmp_path, columns)
+    assert "never negative" in warning
+
+
+def test_joints_at_rest_have_no_say_in_the_choice_of_torques(tmp_path):
+    """Five of six joints only tremble; the current of the sixth bears friction, its sensor none."""
+    time, position, gravity, friction = swings()
+    columns = {"t": time, "pos_6": position, "torque_6": gravity, "current_6": gravity + friction}
+    rng = np.random.default_rng(1)
+    for joint in range(1, 6):
+        columns[f"pos_{joint}"] = 10.0 + rng.normal(0, 0.02, len(time))
+        columns[f"torque_{joint}"] = 1 + rng.normal(0, 0.1, len(time))
+        columns[f"current_{joint}"] = 1 + rng.normal(0, 0.1, len(time))
+    summary = ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    assert summary.torque_unit == "A"
+    assert summary.warnings == ()
+
+
+def test_a_load_that_changes_with_the_direction_is_no_load(tmp_path):
+    """Servos call their own torque, in per mille, load."""
+    time, position, gravity, friction = swings()
+    torque = gravity + friction
+    columns = {"t": time, "q_deg": position, "current": torque / 10, "load": np.round(8 * torque)}
+    (warning,) = warnings_of(tmp_path, columns)
+    assert "load is not used as load" in warning
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    assert table["load"].isna().all()
+
+
+def test_nothing_shows_the_unit_of_a_speed_without_position(tmp_path):
+    time, _, velocity, torque = back_and_forth()
+    (warning,) = warnings_of(tmp_path, {"t": time, "speed": velocity, "torque_Nm": torque})
+    assert "taken as deg/s" in warning
+    assert warnings_of(tmp_path, {"t": time, "rpm": velocity, "torque_Nm": torque}) == ()
+
+
+def test_a_column_named_rpm_is_in_rpm(tmp_path):
+    time, _, velocity, torque = back_and_forth()
+    warnings_of(tmp_path, {"t": time, "rpm": velocity / 6, "torque_Nm": torque})
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    np.testing.assert_allclose(table["velocity"], velocity, atol=1e-6)
+
+
+def test_a_motor_that_turns_on_may_be_logged_in_radians(tmp_path):
+    time, position, _, torque = back_and_forth()
+    columns = {"t": time, "position": position, "torque_Nm": torque}
+    (warning,) = warnings_of(tmp_path, columns)
+    assert "--position-unit rad" in warning
+    forced = IngestSettings(position_unit="rad")
+    assert not any("read as deg" in text for text in warnings_of(tmp_path, columns, forced))
+
+
+def test_counts_that_no_velocity_explains_are_refused(tmp_path):
+    time, position, velocity, torque = back_and_forth()
+    counts = np.round(position * 4096 / 360) + 2048
+    columns = {"t": time, "position": counts, "velocity": velocity / 6 / 0.229, "torque_Nm": torque}
+    with pytest.raises(LogError, match=r"whole numbers .*counts\?; give the angle of one pulse"):
+        warnings_of(tmp_path, columns)
+
+
+def test_the_size_of_a_count_given_as_advised_is_taken(tmp_path):
+    time, position, _, torque = back_and_forth()
+    columns = {"t": time, "position": np.round(position * 4096 / 360) + 2048, "torque_Nm": torque}
+    (tmp_path / "scale.toml").write_text("[scale]\nposition = 0.0879\n")
+    settings = IngestSettings(map_file=tmp_path / "scale.toml")
+    warnings_of(tmp_path, columns, settings)
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    assert np.ptp(table["position"]) == pytest.approx(np.ptp(position), rel=1e-2)
+
+
+def test_a_current_of_hundreds_may_be_in_milliampere(tmp_path):
+    time, position, _, torque = back_and_forth()
+    columns = {"t": time, "q_deg": position, "current": 100 * torque}
+    (warning,) = warnings_of(tmp_path, columns)
+    assert "--torque-unit mA" in warning
+
+
+def test_columns_of_the_same_name_are_told(tmp_path):
+    lines = ["t,q_deg,tau_Nm,tau_Nm"]
+    for t, q, _, u in np.stack(back_and_forth(), axis=1):
+        lines.append(f"{t:.4f},{q:.6f},{u:.3f},0")
+    (tmp_path / "log.csv").write_text("\n".join(lines))
+    summary = ingest([tmp_path / "log.csv"], tmp_path / "work")
+    assert any("several columns are named tau_Nm" in warning for warning in summary.warnings)
