@@ -172,7 +172,7 @@ def test_a_table_without_motion_is_refused(tmp_path):
     with pytest.raises(LogError, match=r"log\.csv.*no column looks like a joint's position"):
         suggested_map([write(table, tmp_path / "log.csv")])
     table["t"] = rng.normal(size=500)
-    with pytest.raises(LogError, match="needs a time column"):
+    with pytest.raises(LogError, match="without a time column, give the period"):
         suggested_map([write(table, tmp_path / "log.csv")])
 
 
@@ -443,3 +443,45 @@ def test_beside_a_torque_without_friction_others_are_named(tmp_path):
     )
     text = suggested_map([path], IngestSettings())
     assert '# torque = "motorwert"' in text
+
+
+def test_a_drive_without_position_and_with_unknown_names(tmp_path):
+    """The speed is known by its unit, the current by its dependence on the direction."""
+    path = named_log(
+        tmp_path,
+        vel_target_RPM=lambda q, v, tau: v / 6,
+        vel_X85_RPM=lambda q, v, tau: v / 6,
+        i_X85_mA=lambda q, v, tau: 900 * np.sign(v),
+    )
+    text = suggested_map([path], IngestSettings())
+    channels = tomllib.loads(text)["channels"]
+    assert channels == {"time": "t_ms", "velocity": "vel_X85_RPM", "torque": "i_X85_mA"}
+    assert tomllib.loads(text)["units"] == {"time": "ms", "velocity": "rpm", "torque": "mA"}
+    assert "half the difference of torque is 0.9" in text
+
+
+def test_the_speeds_of_an_arm_make_no_positions(tmp_path):
+    path = named_log(
+        tmp_path,
+        shoulder_rpm=lambda q, v, tau: v / 6,
+        elbow_rpm=lambda q, v, tau: np.abs(v) / 6,
+        i_shoulder_mA=lambda q, v, tau: 900 * np.sign(v),
+    )
+    with pytest.raises(LogError, match="a friction test needs positions"):
+        suggested_map([path], IngestSettings())
+
+
+def test_a_log_without_names_and_without_time(tmp_path):
+    """The refusal asks for the period; with it, numbers of columns are no joints."""
+    log = clean_log(3, period=0.01)
+    columns = [log[name] for name in (POSITION, VELOCITY, TORQUE)]
+    path = tmp_path / "log.txt"
+    np.savetxt(path, np.column_stack(columns), fmt="%.6f", delimiter="\t")
+    with pytest.raises(LogError, match=r"\[csv\] period"):
+        suggested_map([path], IngestSettings())
+    map_file = tmp_path / "period.toml"
+    map_file.write_text("[csv]\nperiod = 0.01\n")
+    text = suggested_map([path], IngestSettings(map_file=map_file))
+    channels = tomllib.loads(text)["channels"]
+    expected = {"position": "column 1", "velocity": "column 2", "torque": "column 3"}
+    assert channels == {"time": "time [s]", **expected}

@@ -25,6 +25,7 @@ _TORQUE_LIKE = (names.TORQUE, names.LOAD)
 _NAMED_JOINT = re.compile(
     r"(?:^|[_\W])(?:A|J|ax|axis|joint|achse|gelenk)_?(\d{1,2})(?:$|[_\W])", re.I
 )
+_WITHOUT_NAME = re.compile(r"column \d+$")
 _LAST_NUMBER = re.compile(r"^(.*?)(\d{1,2})(\D*)$")
 
 
@@ -149,6 +150,9 @@ def joints_by_number(column_names: Sequence[str], time: int) -> dict[int, int]:
     >>> joints_by_number(["t", "winkel_0", "winkel_1", "strom"], 0)
     {1: 1, 2: 2}
     """
+    # columns without names are numbered, and their numbers are no joints
+    if all(_WITHOUT_NAME.match(name) for name in column_names if _LAST_NUMBER.match(name.strip())):
+        return {}
     families: dict[tuple[str, str], dict[int, int]] = defaultdict(dict)
     for column, name in enumerate(column_names):
         parts = _LAST_NUMBER.match(name.strip())

@@ -11,13 +11,13 @@ from frictioncli.inspection.map_suggestion.columns import (
     MAX_ALTERNATIVES,
     SURE,
     ColumnGuess,
-    LogColumns,
     log_columns,
 )
 from frictioncli.inspection.map_suggestion.derivatives import Derivative, find_derivatives
 from frictioncli.inspection.map_suggestion.direction_dependence import direction_dependences
 from frictioncli.inspection.map_suggestion.log_head import LogHead
 from frictioncli.inspection.map_suggestion.motion_columns import MotionColumns, find_motion
+from frictioncli.inspection.map_suggestion.speed_columns import columns_as_read, columns_of_speed
 from frictioncli.inspection.map_suggestion.temperature_columns import guess_temperature
 from frictioncli.inspection.map_suggestion.time_columns import (
     TimeColumn,
@@ -104,15 +104,22 @@ def suggest_columns(
     if not times:
         raise NotEnoughData(
             f"none of {len(head.values)} columns of numbers grows from row to row in even steps,"
-            " as a time does; a log needs a time column"
+            " as a time does; without a time column, give the period of the rows in a mapping file"
+            " ([csv] period = 0.005, in s), from which a map is suggested with --map"
         )
     time, derivatives = _time_with_derivatives(head, times)
     columns = log_columns(head, time.column)
     time_columns = frozenset(one.column for one in times)
     integrated = next((p for p in plans if p.channels.position.name == names.INTEGRATED), None)
     if integrated is not None:
-        return _without_position(columns, times, integrated)
-    motion = find_motion(columns, derivatives, time, time_columns, joint)
+        return _at_side(Suggestion(*columns_as_read(columns, times, integrated)), integrated)
+    try:
+        motion = find_motion(columns, derivatives, time, time_columns, joint)
+    except NotEnoughData:
+        alone = columns_of_speed(columns, times)
+        if alone is None:
+            raise
+        return Suggestion(*alone)
     number = joint or columns.joints.get(motion.position.column) or file_joint or 1
     moving = {column for pair in derivatives for column in (pair.position, pair.velocity)}
     excluded = time_columns | moving | {motion.position.column}
@@ -147,30 +154,6 @@ def _payload_as_read(plan: JointPlan) -> ColumnGuess | None:
     if channel is None or conversion is None:
         return None
     return ColumnGuess(channel.column, "its name says so", LIKELY, conversion.unit)
-
-
-def _without_position(
-    columns: LogColumns, times: Sequence[TimeColumn], plan: JointPlan
-) -> Suggestion:
-    """Return the columns of a log of one axis without position, all known by their names."""
-    rate, time = plan.channels.velocity, plan.channels.time
-    guesses: dict[str, ColumnGuess | None] = {
-        names.TIME: ColumnGuess(time.column, "its name says so", LIKELY, times[0].unit or "s"),
-    }
-    travel = 0.0
-    if rate is not None:
-        conversion = plan.conversions[names.VELOCITY]
-        why = "its name says so; position is its integral, as the log has none"
-        guesses[names.VELOCITY] = ColumnGuess(rate.column, why, LIKELY, conversion.unit)
-        clock = plan.conversions[names.TIME].factor * columns.head.values[time.column]
-        speed = np.abs(conversion.factor * columns.head.values.get(rate.column, 0.0 * clock))
-        travel = float(np.sum(speed[1:] * np.diff(clock)))
-    guesses[names.TORQUE] = torque_as_read(columns, (), plan)
-    chosen = {guess.column for guess in guesses.values() if guess is not None}
-    number = plan.channels.joint
-    guesses[names.MOTOR_TEMPERATURE] = guess_temperature(columns, number, chosen)
-    found = {name: guess for name, guess in guesses.items() if guess is not None}
-    return _at_side(Suggestion(found, number, travel), plan)
 
 
 def _at_side(suggestion: Suggestion, plan: JointPlan | None) -> Suggestion:

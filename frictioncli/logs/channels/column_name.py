@@ -16,7 +16,7 @@ from frictioncli.logs.channels.named_joints import COMMAND
 
 _UNIT = re.compile(r"^(?P<name>.*?)[\[(](?P<unit>[^\[\]()]*)[\])]\s*$")
 _UNIT_LAST = re.compile(
-    r"^(?P<name>.+)[_ ](?P<unit>mNm|Nm|mA|degC|deg|rad|(?:deg|rad)[_/]?s|dps|rpm|ms|us|ns)$"
+    r"^(?P<name>.+)[_ ](?P<unit>mNm|Nm|mA|degC|deg|rad|(?:deg|rad)[_/]?s|dps|rpm|RPM|ms|us|ns)$"
 )
 _UNIT_OF_QUANTITY = re.compile(
     r"^(?P<name>.+?)(?:[_ ]in)?[_ /,](?P<unit>"

@@ -261,7 +261,7 @@ def _remark_position(
 def _warn_of_turns(axis: _Axis, found: MotionUnits, largest: float, remarks: Remarks) -> None:
     """Warn of a position that goes beyond a turn in rad, and that nothing shows to be in deg."""
     tells = axis.velocity is not None and (
-        _written_unit(axis.velocity) or found.velocity != "deg/s"
+        _written_unit(axis.velocity) or found.velocity not in (None, "deg/s")
     )
     if largest <= position_units.RADIAN_LIMIT or tells or axis.position.name == names.INTEGRATED:
         return
