@@ -5,9 +5,10 @@ from dataclasses import replace
 
 from frictioncli.errors import OptionError
 from frictioncli.logs.channels import channel_names as names
+from frictioncli.logs.channels import units
 from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.joint_plan import JointPlan, plan_joint
-from frictioncli.logs.channels.survey import survey
+from frictioncli.logs.channels.survey import Survey, survey
 from frictioncli.logs.channels.torque_choice import choose_torques
 from frictioncli.logs.channels.torque_constant import TorqueConstant
 from frictioncli.logs.log_source import Refusal
@@ -121,7 +122,30 @@ def _plans_of_layout(
     if not plans:
         return refusals[0]
     left_out = tuple(f"left out: {refusal.text}" for refusal in refusals)
-    return [replace(plans[0], notes=(*plans[0].notes, *left_out)), *plans[1:]]
+    doubts = _doubts_of_time(plans, surveyed, forced)
+    first_plan = replace(
+        plans[0],
+        notes=(*plans[0].notes, *left_out),
+        warnings=(*plans[0].warnings, *doubts),
+    )
+    return [first_plan, *plans[1:]]
+
+
+def _doubts_of_time(
+    plans: list[JointPlan], surveyed: Survey, forced: Mapping[str, str]
+) -> tuple[str, ...]:
+    """Return a warning of times in s that may count milliseconds or rows."""
+    time = plans[0].channels.time
+    if time.unit or time.meaning.unit or names.TIME in forced or any(p.shows_time for p in plans):
+        return ()
+    step = units.whole_step([head[time.column] for head in surveyed.heads])
+    if step is None or step < 1 or plans[0].conversions[names.TIME].unit != "s":
+        return ()
+    return (
+        f"{time.name} has no unit and grows by {step:g} from row to row: read as s; if it is in ms,"
+        " say so with --time-unit ms; if it counts rows, give their period in s with --map, as"
+        " [scale] time = 0.005",
+    )
 
 
 def _with_one_time(plans: list[JointPlan]) -> list[JointPlan]:

@@ -125,3 +125,47 @@ def test_columns_of_the_same_name_are_told(tmp_path):
     (tmp_path / "log.csv").write_text("\n".join(lines))
     summary = ingest([tmp_path / "log.csv"], tmp_path / "work")
     assert any("several columns are named tau_Nm" in warning for warning in summary.warnings)
+
+
+@pytest.mark.parametrize(("per_second", "unit"), [(1e3, "ms"), (1e6, "us"), (1e9, "ns")])
+def test_whole_times_with_long_steps_are_no_seconds(per_second, unit, tmp_path):
+    time, position, _, torque = back_and_forth(period=0.01)
+    columns = {"t": np.round(time * per_second), "q_deg": position, "tau_Nm": torque}
+    summary = ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
+    assert f"t is read as {unit}" in summary.notes
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    np.testing.assert_allclose(table["time"], time, atol=1e-9)
+
+
+def test_times_that_count_rows_or_milliseconds(tmp_path):
+    """Both pieces of advice lead to the right times."""
+    time, position, _, torque = back_and_forth(period=0.01)
+    columns = {"time": np.arange(len(time)), "q_deg": position, "tau_Nm": torque}
+    (warning,) = warnings_of(tmp_path, columns)
+    assert "--time-unit ms" in warning
+    assert warnings_of(tmp_path, columns, IngestSettings(time_unit="ms")) == ()
+    (tmp_path / "scale.toml").write_text("[scale]\ntime = 0.01\n")
+    warnings_of(tmp_path, columns, IngestSettings(map_file=tmp_path / "scale.toml"))
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    np.testing.assert_allclose(table["time"], time, atol=1e-9)
+
+
+def test_velocity_shows_that_a_time_that_grows_by_one_is_in_milliseconds(tmp_path):
+    time, position, velocity, torque = back_and_forth(period=0.001)
+    columns = {"time": np.arange(len(time)), "q_deg": position, "qd_deg_s": velocity}
+    assert warnings_of(tmp_path, columns | {"tau_Nm": torque}) == ()
+
+
+def test_large_whole_torques_may_be_in_other_units(tmp_path):
+    time, position, _, torque = back_and_forth()
+    (warning,) = warnings_of(tmp_path, {"t": time, "q_deg": position, "torque": 1000 * torque})
+    assert "mN·m" in warning
+
+
+def test_counts_and_counts_per_second_are_not_explained_by_microseconds(tmp_path):
+    """A drive's raw values: no unit of time is so short that the rows are nanoseconds apart."""
+    time, position, velocity, torque = back_and_forth()
+    counts = np.round(position * 2**17 / 3.6)
+    columns = {"t": time, "position": counts, "velocity": np.round(velocity * 2**17 / 3.6)}
+    with pytest.raises(LogError, match=r"counts\?; give the angle of one pulse"):
+        warnings_of(tmp_path, columns | {"torque_Nm": torque})

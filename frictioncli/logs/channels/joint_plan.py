@@ -20,6 +20,8 @@ from frictioncli.logs.log_source import Refusal
 
 _MOST_AMPERES = 200.0
 """Currents of a robot's motors stay below. [A]"""
+_LARGE_COUNT = 100
+"""Torques in N·m that are larger are seldom logged as whole numbers. [raw]"""
 _ALL_BUT_OUTLIERS = 0.99
 _OF_RATED = ("%", "‰")
 """Units of torque relative to the rated torque."""
@@ -232,11 +234,25 @@ def _torque_unit(
                 f"{channel.name}: unit {written!r} is not known, taken as N·m; give another with"
                 " --torque-unit, or its size with [scale] torque in --map"
             )
+        elif _counts(values):
+            remarks.warnings.append(
+                f"{channel.name} has no unit and holds whole numbers up to"
+                f" {float(np.max(np.abs(values))):g}: taken as N·m; if it is in mN·m or ‰, say so"
+                " with --torque-unit; if it counts, give the size of a count with [scale] torque in"
+                " --map"
+            )
         else:
             remarks.notes.append(
                 f"{channel.name}: no unit in the header, taken as N·m; force with --torque-unit"
             )
     return unit
+
+
+def _counts(values: Array) -> bool:
+    """Return whether torques are large whole numbers, as drives count them."""
+    return bool(len(values)) and bool(
+        np.max(np.abs(values)) > _LARGE_COUNT and np.all(values == np.round(values))
+    )
 
 
 def _without_gear(

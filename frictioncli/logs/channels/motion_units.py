@@ -151,6 +151,7 @@ def _axis_units(
         possible=allowed,
         ratio=ratio,
         usual=usual,
+        period=surveyed_motion.period(survey, axis.time),
     )
     if (declared_position, declared_velocity) == (None, None) and wraps_as_of_mit_protocol(
         [motion.position for motion in surveyed_motion.motions_of(survey, axis.time, family)]
@@ -164,14 +165,12 @@ def _axis_units(
         motions = surveyed_motion.motions_of(survey, axis.time, [position])
         if units.is_count(position.unit):
             doubt = _COUNTED.format(name=f"{position.name} counts pulses")
-        elif found.position == "deg" and _may_count(
-            position, [motion.position for motion in motions], largest
-        ):
+        elif _may_count(position, [motion.position for motion in motions], largest):
             text = f"{position.name} has no unit and holds whole numbers up to {largest:.4g}"
             if axis.velocity is not None and found.velocity is None:
                 text += f", and {found.evidence}"
                 doubt = _COUNTED.format(name=f"{text}: counts?") + "; or --position-unit deg"
-            else:
+            elif found.position == "deg":
                 remarks.warnings.append(
                     f"{text}: read as deg; if it counts, give the size of a count with [scale]"
                     " position in --map"

@@ -103,3 +103,18 @@ def tool_path_per_angle(survey: Survey, family: list[LogChannel]) -> float | Non
         if ratio is not None:
             found.append(ratio)
     return float(np.median(found)) if found else None
+
+
+def period(survey: Survey, time: LogChannel) -> float | None:
+    """Return the median step of a time from row to row; None where there is none.
+
+    Parameters
+    ----------
+    survey : Survey
+        Raw samples.
+    time : LogChannel
+        The time. [raw]
+    """
+    steps = np.concatenate([np.empty(0), *(np.diff(head[time.column]) for head in survey.heads)])
+    ahead = steps[steps > 0]
+    return float(np.median(ahead)) if len(ahead) else None

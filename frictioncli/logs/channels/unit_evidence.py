@@ -8,6 +8,8 @@ from numpy.lib.stride_tricks import sliding_window_view
 from frictioncli.arrays import Array, Flags
 from frictioncli.logs.channels.units import FACTORS, ONLY_WRITTEN
 
+_SHORTEST = 2e-5
+"""Shortest period of logs from row to row. [s]"""
 _UNSCALED_COST = 0.5
 """Cost of velocity in mdeg/s, that is without scale; velocity in deg/s with time in ms is
 preferred."""
@@ -158,6 +160,7 @@ def motion_units(
     possible: frozenset[str],
     ratio: float | None,
     usual: str = "deg",
+    period: float | None = None,
 ) -> MotionUnits:
     """Choose the units that agree with the values and differ least from the header.
 
@@ -171,6 +174,8 @@ def motion_units(
         Result of :func:`motion_ratio`.
     usual : str, optional
         Position unit that is preferred where neither the header nor the values tell it.
+    period : float, optional
+        Step of time from row to row, where the unit of time is not declared. [raw]
 
     Examples
     --------
@@ -187,6 +192,8 @@ def motion_units(
         return MotionUnits(time or "s", positions[0], assumed, False, "")
     best: tuple[float, MotionUnits] | None = None
     for time_unit in dict.fromkeys((time or "s", "s", "ms", "us")):
+        if time is None and period is not None and period * FACTORS["time"][time_unit] < _SHORTEST:
+            continue
         for position_unit in positions:
             for velocity_unit, velocity_factor in FACTORS["velocity"].items():
                 if velocity_unit in ONLY_WRITTEN and velocity_unit not in (

@@ -104,6 +104,8 @@ _COUNTS = re.compile(
 _NOT_READ = re.compile(r"[^\x00-\x7f]+|\?+")
 _NOT_ASCII = re.compile(r"[^\x00-\x7f]+")
 
+_LONGEST_PERIOD = 5.0
+"""Longest usual period from row to row. [s]"""
 _LOWEST_TEMPERATURE, _HIGHEST_TEMPERATURE = -30.0, 150.0  # [°C]
 
 
@@ -184,7 +186,8 @@ def infer_time_unit(times: "list[Array]", declared: str | None) -> str:
     """Return the unit of a time column.
 
     The header's unit is taken where it names one. Otherwise times since 1970 are recognised by
-    their size; other times are taken as seconds.
+    their size, and whole numbers by steps that would be long in seconds; other times are taken as
+    seconds.
 
     Parameters
     ----------
@@ -209,7 +212,35 @@ def infer_time_unit(times: "list[Array]", declared: str | None) -> str:
     for limit, unit in ((1e17, "ns"), (1e14, "us"), (1e11, "ms")):
         if size > limit:
             return unit
-    return "s"
+    step = whole_step(times)
+    if step is None or step <= _LONGEST_PERIOD:
+        return "s"
+    factors = FACTORS["time"]
+    return next(
+        u for u in ("ms", "us", "ns", "s") if step * factors[u] <= _LONGEST_PERIOD or u == "s"
+    )
+
+
+def whole_step(times: "list[Array]") -> float | None:
+    """Return the median step of times that are whole numbers; None where they are not.
+
+    Parameters
+    ----------
+    times : list of ndarray, shape (n,)
+        Raw times of each log.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> whole_step([np.array([0.0, 10.0, 20.0])]), whole_step([np.array([0.0, 0.5])])
+    (10.0, None)
+    """
+    import numpy as np
+
+    long = [t[np.isfinite(t)] for t in times]
+    if not any(len(t) > 1 for t in long) or any(np.any(t != np.round(t)) for t in long):
+        return None
+    return float(np.median(np.concatenate([np.diff(t) for t in long])))
 
 
 def infer_temperature_unit(
