@@ -215,6 +215,28 @@ def test_names_in_other_languages(columns):
 
 
 @pytest.mark.parametrize(
+    ("column", "quantity", "joint"),
+    [
+        ("时间(s)", "time", None),
+        ("时间戳", "time", None),
+        ("关节1位置(rad)", "position", 1),
+        ("关节2实际速度", "velocity", 2),
+        ("电机电流_3(A)", "torque", 3),
+        ("トルク[Nm]", "torque", None),
+        ("電流2", "torque", 2),
+        ("温度", "motor_temperature", None),
+        ("目标位置", None, None),
+        ("摩擦力矩", None, None),
+        ("重力矩1", None, None),
+    ],
+)
+def test_names_in_chinese_and_japanese(column, quantity, joint):
+    """A torque of gravity or of friction is none that was measured."""
+    found = [(c.quantity, c.joint, c.name) for c in recognise_channels([column])]
+    assert found == ([] if quantity is None else [(quantity, joint, column)])
+
+
+@pytest.mark.parametrize(
     ("columns", "clock"),
     [
         (["sim_time", "q1", "tau1"], "sim_time"),

@@ -14,6 +14,7 @@ from frictioncli.logs.channels.channel_names import (
 )
 from frictioncli.logs.channels.column_name import key_of, known_name, split_unit
 from frictioncli.logs.channels.named_joints import named_joints
+from frictioncli.logs.channels.translated_names import in_english
 
 _JOINT_IN_FILE_NAME = re.compile(
     r"NextGenDrive#(\d{1,2})"
@@ -97,6 +98,13 @@ def recognise_channels(
     >>> [(channel.quantity, channel.joint) for channel in recognise_channels(columns)]
     [('time', None), ('position', 1), ('position', 2)]
     """
+    found = _recognised_channels([in_english(column) for column in columns], first_merged)
+    return tuple(replace(channel, name=columns[channel.column]) for channel in found)
+
+
+def _recognised_channels(
+    columns: Sequence[str], first_merged: int | None
+) -> tuple[LogChannel, ...]:
     found: list[LogChannel] = []
     seen: set[str] = set()
     for index, column in enumerate(columns):
