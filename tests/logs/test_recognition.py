@@ -256,6 +256,7 @@ def test_a_clock_is_known_by_its_last_word_where_there_is_no_other_time(columns,
         (["t", "q0", "q1", "i0", "i1"], 2),
         (["t", "q0", "q1", "i0"], 0),
         (["i", "t", "q", "x1"], 0),
+        (["t", "AIPos_A1", "AIPos_A2", "i1", "i2"], 0),
         (["t", "q0", "q1", "i0", "i1", "tau0", "tau1"], 0),
     ],
 )

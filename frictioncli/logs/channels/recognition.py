@@ -162,13 +162,17 @@ def _currents_in_ampere(columns: Sequence[str]) -> list[LogChannel]:
 
 
 def _numbered_currents(columns: Sequence[str], found: Sequence[LogChannel]) -> list[LogChannel]:
-    """Return columns such as ``i_2`` where each joint with a position has one."""
+    """Return columns such as ``i_2`` where each joint with a position ``q_2`` has one.
+
+    Beside positions with other names they may be the inputs of a controller.
+    """
     numbers = {
         index: int(parts[1])
         for index, column in enumerate(columns)
         if (parts := _NUMBERED_CURRENT.match(column.strip()))
     }
-    joints = {channel.joint for channel in found if channel.quantity == POSITION}
+    positions = [channel for channel in found if channel.quantity == POSITION]
+    joints = {channel.joint for channel in positions if channel.family.startswith("q")}
     if not joints or set(numbers.values()) != joints:
         return []
     meaning = MEANINGS["current"]
