@@ -100,9 +100,11 @@ def choose_torques(joints: Sequence[JointChannels], survey: Survey) -> list[Join
 
 def _range(channels: JointChannels, survey: Survey) -> float:
     """Return the range of a joint's position but for its extreme values [raw]."""
-    values = survey.pooled(channels.position)
-    low, high = np.quantile(values, (0.001, 0.999)) if len(values) else (0.0, 0.0)
-    return float(high - low)
+    values = np.sort(survey.pooled(channels.position))
+    if not len(values):
+        return 0.0
+    extreme = len(values) // 1000
+    return float(values[-1 - extreme]) - float(values[extreme])
 
 
 def _chosen(
@@ -241,7 +243,9 @@ def _by_bin(time: Array, position: Array, torques: Array) -> Array:
     # over several samples where there are many, which divides the noise of position
     width = max(len(time) // 2000, 1)
     elapsed, moved = (values[width:] - values[:-width] for values in (time, position))
-    velocity = np.divide(moved, elapsed, out=np.zeros_like(moved), where=elapsed > 0)
+    with np.errstate(over="ignore"):  # of damaged values
+        velocity = np.divide(moved, elapsed, out=np.zeros_like(moved), where=elapsed > 0)
+    velocity = np.where(np.isfinite(velocity), velocity, 0.0)
     middle = slice(width // 2, width // 2 + len(velocity))
     low, span = float(np.min(position)), float(np.ptp(position))
     number = ((position[middle] - low) / span * (_BINS - 1)).astype(np.int64)
