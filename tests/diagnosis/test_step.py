@@ -68,7 +68,7 @@ def test_noise_has_no_structure_beyond_chance():
     for seed in range(4):
         data = problem(seed, **DRIFTS[seed % 3])
         found = structures(Step.of(Precomputed.of(data), []))
-        assert found == sorted(found, key=lambda one: one.p_value)
+        assert list(found) == sorted(found, key=lambda one: one.p_value)
         assert {len(one.axes) for one in found} == {1, 2}
         assert all(one.interval[0] <= one.size <= one.interval[1] for one in found)
         least.append(found[0].p_value)

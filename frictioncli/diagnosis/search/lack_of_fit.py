@@ -163,7 +163,7 @@ def _may_be_of_load(one: Structure, found: Sequence[Structure]) -> bool:
     )
 
 
-def structures(step: Step) -> list[Structure]:
+def structures(step: Step) -> tuple[Structure, ...]:
     """Return the lack of fit along every axis, most likely first.
 
     The discrepancy counts with the amplitude that is expected of it, so that what is larger than
@@ -174,6 +174,10 @@ def structures(step: Step) -> list[Structure]:
     step : Step
         Base and accepted effects.
     """
+    return step.once(structures, lambda: _structures(step))
+
+
+def _structures(step: Step) -> tuple[Structure, ...]:
     problem = step.problem
     axes = {
         place: columns
@@ -217,20 +221,22 @@ def structures(step: Step) -> list[Structure]:
         by_place[_LOAD] = max(load, carried(constant), key=lambda one: one[2])
     found = [one for one in by_place.values() if one is not None]
     found += [_drift(step, expected, null, number) for number in range(2)]
-    return sorted(
-        (
-            Structure(
-                axes=names,
-                channel=channel,
-                p_value=min(1.0, len(found) * chi2_tail(statistic, 1) / 2),
-                statistic=max(statistic, 0.0),
-                size=size,
-                interval=interval,
-            )
-            for names, channel, statistic, size, interval in found
-        ),
-        key=lambda one: -one.statistic + _TOLD_BY_ANGLE * (one.axes == ("load",)),
+    every = (
+        Structure(
+            axes=names,
+            channel=channel,
+            p_value=min(1.0, len(found) * chi2_tail(statistic, 1) / 2),
+            statistic=max(statistic, 0.0),
+            size=size,
+            interval=interval,
+        )
+        for names, channel, statistic, size, interval in found
     )
+
+    def behind(one: Structure) -> float:
+        return -one.statistic + _TOLD_BY_ANGLE * (one.axes == ("load",))
+
+    return tuple(sorted(every, key=behind))
 
 
 def expected_components(step: Step) -> Components:

@@ -1,25 +1,17 @@
 """One step of the search: every hypothesis tested against base and accepted effects."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import Any, TypeVar
 
 import numpy as np
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import basis_columns
-from frictioncli.diagnosis.fit.hypotheses import (
-    EffectFit,
-    HypothesisTest,
-    hypothesis_of,
-)
-from frictioncli.diagnosis.fit.mixed_model import (
-    Components,
-    MixedFit,
-    Variances,
-    evaluate,
-)
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, hypothesis_of
+from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, Variances, evaluate
 from frictioncli.diagnosis.fit.planted_columns import with_torque
 from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.simplex_search import simplex_minimum
@@ -34,6 +26,8 @@ from frictioncli.effects.history import since_start
 from frictioncli.effects.history_search import refined_history
 from frictioncli.effects.pair_series import measured_share
 from frictioncli.model.noise import Noise
+
+_Found = TypeVar("_Found")
 
 REFITTED = 8
 """Number of hypotheses for which the variance components are estimated anew."""
@@ -65,7 +59,7 @@ class Step:
     components: Components
     products: Products
     fit: MixedFit
-    _alone: dict[tuple[object, ...], tuple[Effect, Catalogue]] = field(default_factory=dict)
+    _found: dict[object, Any] = field(default_factory=dict)
 
     @classmethod
     def of(cls, precomputed: Precomputed, accepted: Sequence[EffectFit]) -> "Step":
@@ -112,8 +106,15 @@ class Step:
             columns=columns,
             products=products,
             fit=fit_variances(self.components, products, self.known, start),
-            _alone={},
+            _found={},
         )
+
+    def once(self, key: object, work: Callable[[], _Found]) -> _Found:
+        """Return what belongs to a key at this step, worked out when it is first asked for."""
+        if key not in self._found:
+            self._found[key] = work()
+        found: _Found = self._found[key]
+        return found
 
     @property
     def problem(self) -> Problem:
@@ -292,11 +293,12 @@ class Step:
 
     def _alone_at(self, effect: Effect, shape: dict[str, float]) -> Catalogue:
         """Return the catalogue of one effect at one shape."""
-        key = (id(effect), *shape.items())
-        if key not in self._alone:
+
+        def alone() -> tuple[Effect, Catalogue]:
             found = hypothesis_of(effect, self.problem, [shape])
-            self._alone[key] = effect, Catalogue.of(self.precomputed, [found])
-        return self._alone[key][1]
+            return effect, Catalogue.of(self.precomputed, [found])
+
+        return self.once((id(effect), *shape.items()), alone)[1]
 
     def _refitted(self, catalogue: Catalogue, number: int, shape: int) -> MixedFit:
         """Return the fit of a hypothesis at one of its shapes, with the variance components."""
