@@ -13,6 +13,7 @@ from frictioncli.diagnosis.search.possible import lies_on_bound
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects import BY_NAME
 from tests.diagnosis.dense_noise import problem
 from tests.diagnosis.wave_effects import THREE, A, B, C, effect, wave
 
@@ -126,7 +127,7 @@ def test_what_was_superfluous_comes_back_once(catalogue, monkeypatch):
 
     monkeypatch.setattr(cause_search._Search, "retested", fickle)
     data = problem(18, friction=lambda rows: A(rows) + 0.5 * B(rows) + 2.0 * C(rows))
-    assert find_causes(data, effects, SETTINGS, MARGIN).causes == ()
+    assert find_causes(data, effects, SETTINGS, MARGIN, discrepancy=0.0).causes == ()
     assert tried == ["c", "a", "b"] * 2
 
 
@@ -155,7 +156,7 @@ def test_what_explains_something_else_is_no_rival_however_certain_it_is(catalogu
     twin = effect("twin", [(1.0, A), (0.01, C)])
     effects = catalogue(*THREE, twin)
     data = problem(6, friction=lambda rows: 0.3 * A(rows) + 0.6 * B(rows))
-    precomputed = Precomputed.of(data)
+    precomputed = Precomputed.of(data, discrepancy=0.0)
     step = Step.of(precomputed, [])
     tests = step.tested(Catalogue.of(precomputed, [hypothesis_of(one, data) for one in effects]))
     own = step.refined(tests["a"].effect_fit(THREE[0]))
@@ -171,7 +172,7 @@ def test_a_rival_falls_behind_by_no_more_than_a_form_may_miss(catalogue):
     """A wave with 6 % of another: a few hundredths of the evidence are against it."""
     effects = catalogue(THREE[0], effect("near", [(1.0, A), (0.06, C)]))
     data = problem(6, friction=lambda rows: 1.5 * A(rows))
-    precomputed = Precomputed.of(data)
+    precomputed = Precomputed.of(data, discrepancy=0.0)
     step = Step.of(precomputed, [])
     tests = step.tested(Catalogue.of(precomputed, [hypothesis_of(one, data) for one in effects]))
     own = step.refined(tests["a"].effect_fit(THREE[0]))
@@ -294,3 +295,16 @@ def test_the_search_ends_whatever_the_catalogue(catalogue, monkeypatch, seed):
 def test_a_catalogue_of_one_effect_can_be_searched(catalogue):
     (only,) = catalogue(effect("a", [(1.0, A)]))
     assert names(find_causes(problem(17, friction=A), [only], SETTINGS, MARGIN)) == ["a"]
+
+
+def test_a_harmonic_too_fine_for_a_smooth_function_is_no_ripple_of_its_own():
+    """Beside one, a smooth function of the angle would take the ripple itself."""
+
+    def ripple(rows):
+        angle = np.radians(rows.position)
+        return np.sin(8 * angle + 0.4) + 0.15 * np.sin(24 * angle)
+
+    data = problem(8, friction=ripple)
+    (cause,) = find_causes(data, (BY_NAME["position_ripple"],), SETTINGS, MARGIN).causes
+    assert cause.fit.shape["order"] == pytest.approx(8.0, abs=0.2)
+    assert cause.visible == pytest.approx(1 / np.sqrt(2), rel=0.1)

@@ -10,7 +10,7 @@ from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.mixed_model import evaluate, weights_of
 from frictioncli.diagnosis.fit.products import Places, Products
 from frictioncli.diagnosis.noise.discrepancy import discrepancy_of
-from frictioncli.diagnosis.noise.discrepancy_functions import SPEED_RIPPLE
+from frictioncli.diagnosis.noise.discrepancy_functions import FINE, SPEED_RIPPLE
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from tests.diagnosis.dense_noise import problem
@@ -42,6 +42,8 @@ def parts(smooth, one):
 
 def weight(one):
     """Return the expected size of a function relative to a main effect of friction."""
+    if one.axes == FINE:
+        return 0.2
     return 0.6 if one.channel == "load" or len(one.axes) == 2 else 1.0
 
 
@@ -89,7 +91,8 @@ def test_functions_depend_on_their_axes_and_on_the_base_alone(joint):
     for one in smooth.components:
         if "form" in one.axes:
             continue
-        axes = ("position", "speed") if one.axes == SPEED_RIPPLE else one.axes
+        own_axes = {SPEED_RIPPLE: ("position", "speed"), FINE: ("position",)}
+        axes = own_axes.get(one.axes, one.axes)
         keys = np.column_stack([getattr(joint.table, axis) for axis in axes])
         place = np.unique(keys, axis=0, return_inverse=True)[1].ravel()
         own = slice(0, half) if one.channel == "friction" else slice(half, None)
@@ -104,6 +107,28 @@ def test_functions_depend_on_their_axes_and_on_the_base_alone(joint):
         columns, known = within(orthogonal(smooth)[:, one.columns]), within(base)
         fitted = known @ np.linalg.lstsq(known, columns, rcond=1e-12)[0]
         np.testing.assert_allclose(columns, fitted, atol=1e-5)
+
+
+def test_what_is_finer_than_a_smooth_function_has_an_amplitude_of_its_own(joint):
+    """A wave of order 20.5 over the stroke, of which the smooth one has nearly nothing."""
+    position = joint.table.position
+    angle, place = np.unique(position, return_inverse=True)
+    smooth = smooth_of(joint)
+    (one,) = (one for one in smooth.components if one.axes == FINE)
+    wave = np.cos(20.5 * np.pi * (angle - angle[0]) / np.ptp(angle))[place]
+    torque = np.concatenate([wave, np.zeros(len(wave))])
+    span, own = span_of(joint), orthogonal(smooth)[:, one.columns]
+    torque -= span @ (span.T @ torque)
+    (alone,) = (
+        part
+        for part in smooth.components
+        if (part.axes, part.channel) == (("position",), "friction")
+    )
+    left = [
+        np.linalg.norm(torque - columns @ np.linalg.lstsq(columns, torque, rcond=None)[0])
+        for columns in (own, orthogonal(smooth)[:, alone.columns])
+    ]
+    assert left[0] < 0.2 * np.linalg.norm(torque) < 0.8 * np.linalg.norm(torque) < left[1]
 
 
 def test_a_ripple_of_the_speed_grows_with_its_square(joint):
@@ -143,8 +168,9 @@ def test_what_does_not_vary_has_no_function(joint):
     still = replace(joint, table=replace(joint.table, speed=50 * one, temperature=30 * one))
     smooth = smooth_of(still)
     axes = {axis for component in smooth.components for axis in component.axes}
-    assert axes - {"form", "speed", "temperature"} == {"position"}
-    assert {one.axes for one in smooth.components if "form" not in one.axes} == {("position",)}
+    assert axes - {"form", "speed", "temperature"} == {"position", *FINE}
+    left = {one.axes for one in smooth.components if "form" not in one.axes}
+    assert left == {("position",), FINE}
     # the same sum for fewer functions
     assert smooth.amplitude > smooth_of(joint).amplitude
 

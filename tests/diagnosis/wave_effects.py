@@ -41,6 +41,6 @@ def effect(name, *waves, lower=-50.0, upper=50.0):
 
 
 A, B, C = wave(19.0), wave(23.0, 0.4), wave(29.0, 1.0)
-"""Waves shorter than those of the discrepancy, so that it takes no part of them."""
+"""Waves shorter than those of the smooth discrepancy; a fine one may take a part of them."""
 
 THREE = effect("a", [(1.0, A)]), effect("b", [(1.0, B)]), effect("c", [(1.0, C)])

@@ -21,7 +21,7 @@ from frictioncli.diagnosis.empirical.term import (
 from frictioncli.diagnosis.fit.columns import RANK, base_rows
 from frictioncli.diagnosis.noise.cosine_series import CosineSeries
 from frictioncli.diagnosis.noise.discrepancy import Component, weight_of
-from frictioncli.diagnosis.noise.discrepancy_functions import FORM, SPEED_RIPPLE
+from frictioncli.diagnosis.noise.discrepancy_functions import FINE, FORM, SPEED_RIPPLE
 from frictioncli.effects.base import Basis
 
 
@@ -68,8 +68,8 @@ def functions_of(
     """Return the functions of a discrepancy over a problem's rows.
 
     Errors in the form of the friction model are left out: functions of speed and temperature hold
-    them, too. So is inertia of a speed that is not constant, and a load that is measured, which
-    nobody simulates.
+    them, too. So are what is finer along the angle than a smooth function, inertia of a speed that
+    is not constant, and a load that is measured, which nobody simulates.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def functions_of(
     ranges = in_coordinates(ranges_seen(problem.table))
     found = []
     for component, size in zip(components, np.exp(amplitude), strict=True):
-        if component.axes == FORM or component.axes == SPEED_RIPPLE:
+        if component.axes in (FORM, FINE, SPEED_RIPPLE):
             continue
         if component.channel == "load" and problem.has_load_channel:
             continue

@@ -10,7 +10,8 @@ over the range of its quantity, with :math:`s_k` falling with *k*, so that it is
 coefficients of the base model are free, so that only the part of a function that is orthogonal to
 the base counts [2]_; it is this part that has the amplitude. The amplitude :math:`\omega` of
 each function is at least its share of 0.75 % of the mean friction; above that it has a lognormal
-prior, and is estimated with each rival in place. One more function in load stands for the
+prior, and is estimated with each rival in place. A function of friction has what is finer along the
+angle than the smooth one, with an amplitude of its own. One more function in load stands for the
 inertia of a speed that ripples with the angle.
 
 Errors of the base's parameters are what a function adds along the base's columns, where no data
@@ -33,7 +34,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, joined, reduced
 from frictioncli.diagnosis.noise.cosine_series import HALF
-from frictioncli.diagnosis.noise.discrepancy_functions import FORM, SPEED_RIPPLE, functions_of
+from frictioncli.diagnosis.noise.discrepancy_functions import FINE, FORM, SPEED_RIPPLE, functions_of
 from frictioncli.effects.base import CHANNELS, Channel
 
 SHARE = 0.0075
@@ -51,6 +52,9 @@ they look like its parameters: exponents are fitted to one joint, and differ fro
 _MINOR_WEIGHT = 0.6
 """The same of functions of two quantities and of those in the load channel: main effects are larger
 than interactions, and gravity is better known than friction."""
+
+_FINE_WEIGHT = 0.2
+"""The same of friction's fine function of the angle: a smooth one would have 0.08 in its orders."""
 
 _UNSEEN = float(np.exp(SPREAD**2))
 """Root mean square of an amplitude that no data show, relative to its median."""
@@ -70,7 +74,7 @@ class Component:
     ----------
     axes : tuple of str
         The quantities that it depends on: ``position``, ``speed``, ``temperature``; or
-        :data:`SPEED_RIPPLE`.
+        :data:`FORM`, :data:`FINE` or :data:`SPEED_RIPPLE`.
     channel : {"friction", "load"}
         The channel in which it shows.
     columns : slice
@@ -261,6 +265,8 @@ def weight_of(axes: tuple[str, ...], channel: Channel) -> float:
     channel : {"friction", "load"}
         The channel in which it shows.
     """
+    if axes == FINE:
+        return _FINE_WEIGHT
     return _MINOR_WEIGHT if channel == "load" or len(axes) == 2 else 1.0
 
 

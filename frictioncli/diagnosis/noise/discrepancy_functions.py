@@ -10,6 +10,11 @@ FORM = ("speed", "temperature", "form")
 
 SPEED_RIPPLE = ("speed ripple",)
 
+FINE = ("fine position",)
+
+_FINE_ORDERS = (17, 32)
+"""Least and greatest order of the cosines of friction's fine function of the angle."""
+
 _FRICTION = (
     ("position",),
     ("speed",),
@@ -39,11 +44,12 @@ def functions_of(table: EffectTable) -> list[tuple[Channel, tuple[str, ...], Arr
     Returns
     -------
     list of (str, tuple of str, ndarray)
-        Channel of each function, the quantities that it depends on, or :data:`FORM` or
-        :data:`SPEED_RIPPLE`, and its columns, shape (rows, columns).
+        Channel of each function, the quantities that it depends on, or :data:`FORM`, :data:`FINE`
+        or :data:`SPEED_RIPPLE`, and its columns, shape (rows, columns).
     """
     found: list[tuple[Channel, tuple[str, ...], Array]] = [("friction", FORM, _form(table))]
     found += [("friction", *one) for one in _functions(table, _FRICTION)]
+    found += [("friction", *one) for one in _of_fine_angle(table)]
     found += [("load", *one) for one in _functions(table, _LOAD)]
     found += [("load", *one) for one in _of_speed_ripple(table)]
     return found
@@ -60,6 +66,21 @@ def _functions(
             series = CosineSeries.of(axes, table, ranges)
             found.append((axes, series.weights * series.columns(table, ranges)))
     return found
+
+
+def _of_fine_angle(table: EffectTable) -> list[tuple[tuple[str, ...], Array]]:
+    """Return cosines of high orders over the angle, all with the same weight.
+
+    They are those beyond the smooth function's. Without them, what is as fine, such as a higher
+    harmonic of a ripple, would be a ripple of its own beside a smooth function that is the ripple.
+    """
+    angles = len(np.unique(table.position))
+    order = np.arange(_FINE_ORDERS[0], min(_FINE_ORDERS[1], angles - 1) + 1)
+    if not len(order):
+        return []
+    low, high = ranges_of(table)["position"]
+    place = (table.position - low) / (high - low)
+    return [(FINE, np.cos(np.pi * order * place[:, np.newaxis]))]
 
 
 def _of_speed_ripple(table: EffectTable) -> list[tuple[tuple[str, ...], Array]]:
