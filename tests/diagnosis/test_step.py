@@ -372,7 +372,7 @@ def test_half_of_what_discrepancy_has_of_an_effect_s_form_is_in_its_interval():
 def test_accepted_effects_are_part_of_the_null_hypothesis():
     data = problem(7, friction=lambda rows: 1.0 * A(rows) + 1.0 * B(rows))
     first, second = effect("a", [(1.0, A)]), effect("b", [(1.0, B)])
-    precomputed = Precomputed.of(data)
+    precomputed = Precomputed.of(data, discrepancy=0.0)
     before = Step.of(precomputed, [])
     step = Step.of(precomputed, [EffectFit(first, {}, np.array([1.0]), np.eye(1), 1.0)])
     assert step.known == before.known + 1
