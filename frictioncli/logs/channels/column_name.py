@@ -40,7 +40,8 @@ _MEASURED = re.compile(
     r"|averaged|average|avg|joint[ _]?states?)(?=$|[ _.\-\d])",
     re.I,
 )
-_WORD_ENDS = re.compile(r"(?<=[a-z])(?=[A-Z])")
+WORD_ENDS = re.compile(r"(?<=[a-z])(?=[A-Z])")
+"""Where a word of a name in camel case ends."""
 _OF_MESSAGE = re.compile(
     r"^(?:field|msg|data|feedback|(?:axis\d\.)?(?:encoder|controller))\.", re.I
 )
@@ -189,7 +190,7 @@ def _spellings(name: str) -> list[str]:
         texts = ["_".join(path[-2:]), path[-1]]
     elif len(path) > 2 and _JOINT_ALONE.match(path[-2]):
         texts.append("_".join(path[-2:]))
-    spaced = [_MEASURED.sub("", _WORD_ENDS.sub(" ", text)) for text in texts]
+    spaced = [_MEASURED.sub("", WORD_ENDS.sub(" ", text)) for text in texts]
     plain = [" ".join(text.replace("_", " ").split()) for text in spaced]
     return [*texts, *(text for text in plain if text)]
 

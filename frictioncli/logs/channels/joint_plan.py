@@ -250,9 +250,8 @@ def _torque_unit(
 
 def _counts(values: Array) -> bool:
     """Return whether torques are large whole numbers, as drives count them."""
-    return bool(len(values)) and bool(
-        np.max(np.abs(values)) > _LARGE_COUNT and np.all(values == np.round(values))
-    )
+    largest = float(np.max(np.abs(values), initial=0.0))
+    return largest > _LARGE_COUNT and position_units.are_whole([values])
 
 
 def _without_gear(

@@ -12,7 +12,7 @@ from frictioncli.logs.channels.channel_names import (
     TORQUE,
     Meaning,
 )
-from frictioncli.logs.channels.column_name import key_of, known_name, split_unit
+from frictioncli.logs.channels.column_name import WORD_ENDS, key_of, known_name, split_unit
 from frictioncli.logs.channels.named_joints import named_joints
 from frictioncli.logs.channels.translated_names import in_english
 
@@ -31,7 +31,6 @@ _DURATION = re.compile(
 )
 """Words in front of ``time`` in the name of a duration, not of a clock."""
 _CLOCK_WITH_UNIT = re.compile(r"^(?P<name>.+)_(?P<unit>s|secs?|seconds|[mun]s|msec|usec|nsec)$")
-_WORD_ENDS = re.compile(r"(?<=[a-z])(?=[A-Z])")
 _BARE_JOINT = re.compile(r"^(?:joint|axis|achse|gelenk)[ _.]?(\d{1,2})$", re.I)
 _ID_COLUMN = re.compile(r"^(?:motor|joint|axis|achse|servo)[ _.]?(?:id|no|nr|number|nummer)$", re.I)
 
@@ -186,7 +185,7 @@ def _clocks(columns: Sequence[str]) -> list[LogChannel]:
         name, unit = split_unit(column)
         if not unit and (parts := _CLOCK_WITH_UNIT.match(name)):
             name, unit = parts["name"], parts["unit"]
-        words = _WORD_ENDS.sub(" ", name)
+        words = WORD_ENDS.sub(" ", name)
         if _CLOCK.search(words) and not _DURATION.search(words):
             found.append(LogChannel(index, column, Meaning(TIME, rank=2), None, unit, "time"))
     return found
