@@ -68,9 +68,8 @@ def simulated_rows(results: JointResults, diagnosis: Reloaded) -> pd.DataFrame:
 def _rows(results: JointResults, misfits: Misfits) -> pd.DataFrame:
     problem, table = misfits.problem, misfits.problem.table
     names = dict(zip(np.unique(table.run), problem.runs, strict=True))
-    has_load_channel = results.load_unit != results.unit
-    load = np.zeros_like(problem.load) if has_load_channel else problem.load
-    load_misfit = np.zeros_like(load) if has_load_channel else misfits.before["load"]
+    load = np.zeros_like(problem.load) if problem.has_load_channel else problem.load
+    load_misfit = np.zeros_like(load) if problem.has_load_channel else misfits.before["load"]
     columns: dict[str, object] = {
         "time": table.clock * _CLOCK,
         "run": [names[run] for run in table.run],
@@ -109,7 +108,7 @@ def simulation_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
     fastest = rows[rows["speed"] == shown[-1]]
     series = _series_by_direction(fastest, results)
     _draw_torque(over_angle, _means_by_angle(fastest), series, "position")
-    shown_part = _shown_part(results, "torque u")
+    shown_part = _shown_part(diagnosis, "torque u")
     for upper, lower in columns:
         upper.set_ylabel(f"{shown_part} [{results.unit}]")
         lower.set_ylabel(f"measured − simulated [{results.unit}]")
@@ -123,9 +122,9 @@ def simulation_figure(results: JointResults, *, diagnosis: Reloaded) -> Figure:
     return figure
 
 
-def _shown_part(results: JointResults, whole: str) -> str:
-    """Return the name of the torque that is drawn, which is friction's where load is logged."""
-    return whole if results.load_unit == results.unit else "friction's part of torque"
+def _shown_part(diagnosis: Reloaded, whole: str) -> str:
+    """Return the name of the torque that is drawn: that of friction where load is logged."""
+    return "friction's part of torque" if diagnosis.seen.problem.has_load_channel else whole
 
 
 def _legend(panel: Axes, series: list[tuple[str, SpeedStyle]]) -> None:
@@ -262,7 +261,7 @@ def gain_figure(results: JointResults, *, diagnosis: Reloaded, floor: float) -> 
     left.set_xlim(-reach, reach)
     # room above the curves for the legend
     left.set_ylim(0, 1.35 * left.get_ylim()[1])
-    left.set_xlabel(f"{_shown_part(results, 'torque')}, measured − simulated [{results.unit}]")
+    left.set_xlabel(f"{_shown_part(diagnosis, 'torque')}, measured − simulated [{results.unit}]")
     left.set_ylabel(f"share of points per {results.unit}")
     right.set_xlim(0, reach)
     right.set_ylim(0, 100)

@@ -12,6 +12,7 @@ from frictioncli.report.model_section import (
     model_cards,
     parameters_table,
     poorly_determined,
+    undetermined_base,
 )
 
 
@@ -62,3 +63,19 @@ def test_poorly_determined_parameters_stand_beside_the_name(diagnosed):
     any_size = ParameterRecord(estimate=0.8, ci95=(1e-10, 8e9), unit="N·m")
     found = with_parameters({"boundary_torque": any_size})
     assert found.doubt == found.parameters == "boundary torque not determined"
+
+
+def test_what_the_extended_model_leaves_open_is_said(diagnosed, two_runs):
+    def left_open(name, ci95):
+        extended = diagnosed.extended_model
+        one = replace(extended.parameters[name], ci95=ci95)
+        changed = replace(extended, parameters=extended.parameters | {name: one})
+        return undetermined_base(replace(diagnosed, extended_model=changed))
+
+    assert undetermined_base(diagnosed) == undetermined_base(two_runs) == ""
+    # left out of the model
+    assert left_open("gamma", None) == ""
+    assert left_open("gamma", (3.0, 20.0)) == ""
+    assert left_open("gamma", (-3.0, 20.0)).startswith(
+        "In the extended model these data do not determine γ, not even the sign"
+    )

@@ -31,13 +31,18 @@ FIXED = {
 }
 """Numbers that stand in the sentences themselves."""
 
+UNDETERMINED = [-3.25, 34.5]
+"""Interval of the extended model's gamma, which spans 0."""
+
 
 @pytest.fixture(scope="module")
 def work(tmp_path_factory, write_work, diagnosed_work):
     """A work folder with everything, and its page; figures are captioned but not drawn."""
     work = write_work(tmp_path_factory.mktemp("numbers"))
-    for name in ("diagnosis.json", "extended-model.json"):
-        copyfile(diagnosed_work / name, work / name)
+    copyfile(diagnosed_work / "diagnosis.json", work / "diagnosis.json")
+    extended = json.loads((diagnosed_work / "extended-model.json").read_text(encoding="utf-8"))
+    extended["parameters"]["gamma"]["ci95"] = UNDETERMINED
+    (work / "extended-model.json").write_text(json.dumps(extended), encoding="utf-8")
 
     def undrawn(specs):
         return [replace(spec, draw=lambda results: None) for spec in specs]
@@ -100,6 +105,8 @@ def test_both_models_stand_beside_each_other(page, documents):
     for place, name in ((0, "model"), (2, "extended-model")):
         for one, cells in zip(documents[name]["parameters"].values(), rows.values(), strict=False):
             assert agrees(cells[place], [one["estimate"]])
+    assert rows["γ"][3] == " to ".join(number_text(end) for end in UNDETERMINED)
+    assert any("do not determine γ, not even the sign" in text for _, _, text in page.texts)
 
 
 def test_errors_are_those_of_the_evaluation(page, work):

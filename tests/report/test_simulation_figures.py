@@ -2,6 +2,7 @@
 """Measured and simulated torque, and residuals before and after the extension."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -53,3 +54,22 @@ def test_gain_shows_the_new_run_and_the_noise_floor(diagnosed, diagnosis):
     size = np.abs(new.torque(new.before))
     wanted = 100 * np.mean(size > curve.get_xdata()[half])
     assert curve.get_ydata()[half] == pytest.approx(wanted)
+
+
+def test_a_load_channel_is_no_part_of_the_torque(diagnosed, diagnosis):
+    def logged(misfits):
+        problem = replace(misfits.problem, has_load_channel=True)
+        return replace(misfits, problem=problem)
+
+    both = replace(diagnosis, seen=logged(diagnosis.seen), new=logged(diagnosis.new))
+    rms = np.sqrt(np.mean(np.square(both.new.before["friction"])))
+    with style.style_context():
+        shown = texts(gain_figure(diagnosed, diagnosis=both, floor=0.7))
+    label = next(text for text in shown if text.startswith("base model"))
+    assert float(re.findall(r"RMS ([\d.]+)", label)[0]) == pytest.approx(rms, rel=5e-3)
+    assert "friction's part of torque, measured − simulated [N·m]" in shown
+    rows = simulated_rows(diagnosed, both)
+    measured = diagnosed.torques["friction_torque"]
+    np.testing.assert_allclose(np.sort(rows["forward"]), np.sort(measured))
+    np.testing.assert_allclose(rows["reverse"], -rows["forward"])
+    np.testing.assert_allclose(rows["reverse_simulated"], -rows["forward_simulated"])
