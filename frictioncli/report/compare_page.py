@@ -90,7 +90,7 @@ def compare_html(document: ComparisonDocument, svg: str, pages: Mapping[str, str
     return render(
         "compare.html.jinja",
         scripts=["figures.js"],
-        title=f"What changed in joint {document.joint}",
+        title=f"Joint {document.joint}: changes between runs",
         page=compare_page(document, svg, pages),
         version=__version__,
     )
@@ -130,9 +130,9 @@ def _verdict(document: ComparisonDocument) -> str:
     if document.verdict == "changed":
         return f"The joint has changed. Friction, first run to last: {trend}."
     if document.verdict == "no_evidence":
-        return f"No change was found, and one of {margin} is excluded. First run to last: {trend}."
+        return f"No change was found, and a change of {margin} is ruled out. First run to last: {trend}."
     return (
-        f"Undetermined: no change was found, but one of {margin} is not excluded. First run to"
+        f"Undetermined: no change was found, but a change of {margin} is not ruled out. First run to"
         f" last: {trend}."
     )
 

@@ -168,7 +168,7 @@ def _dropped_table(pairing: Mapping[str, Any], used: int, *, by_regression: bool
         rows.append((f"used in {kind}", thousands_text(used)))
     way = "the regression" if by_regression else "pairing"
     return TextTable(
-        title=f"Samples left out by {way}", header=("reason", "samples"), rows=tuple(rows)
+        title=f"Samples used and left out by {way}", header=("reason", "samples"), rows=tuple(rows)
     )
 
 

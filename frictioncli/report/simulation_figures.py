@@ -26,6 +26,9 @@ from frictioncli.wording import number_text, speed_text
 _CLOCK = 1 / 3600.0
 _MOST_SPEEDS = 4
 _BEFORE, _AFTER = "#D55E00", "#0072B2"
+
+_ROOM_FOR_NAMES = 0.15
+"""Room for the names of runs in a panel, as a share of its height without it."""
 _DIRECTIONS = (("forward", 1.0, True), ("reverse", -1.0, False))
 _HEATING, _COOLING = 1.0, -1.0
 _LEAST_SHARE = 0.5
@@ -204,18 +207,21 @@ def _marker_style(style: SpeedStyle, *, filled: bool) -> dict[str, Any]:
 
 
 def _name_runs(panel: Axes, pairs: pd.DataFrame, diagnosis: Reloaded) -> None:
-    """Write the names of the runs above the panel, and mark the held-out run."""
+    """Write the names of the runs above their points, and mark the held-out run."""
+    low, high = panel.get_ylim()
+    panel.set_ylim(low, high + _ROOM_FOR_NAMES * (high - low))
     spans = pairs.groupby("run")["time"].agg(["min", "max"]).sort_values("min")
     held_out = diagnosis.document.held_out
     for run, span in spans.iterrows():
         new = " (new)" if run == held_out else ""
         panel.annotate(
             f"{figure_text(str(run))}{new}",
-            ((span["min"] + span["max"]) / 2, 0.995),
+            ((span["min"] + span["max"]) / 2, 0.98),
             xycoords=("data", "axes fraction"),
             ha="center",
             va="top",
             fontsize=9,
+            fontweight="bold",
         )
     for start in spans["min"].iloc[1:]:
         panel.axvline(start, color=FAINT, linestyle=":", linewidth=1.2)

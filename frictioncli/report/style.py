@@ -54,6 +54,9 @@ PHASE_COLOURS = {"heat-up": HEATING, "cool-down": COOLING}
 PHASE_WORDS = {"heat-up": "heating", "cool-down": "cooling"}
 
 _SPEED_COLOURS = ("#0072B2", "#009E73", "#9A7D00", "#D55E00", "#A03C78", "#4B4B4B")
+_DARK_ENOUGH = 1.05 / 4.6 - 0.05
+"""Relative luminance of text that stands out of white by 4.6 to 1; WCAG 2.1 AA asks for 4.5."""
+
 _SLOWEST = "#6A5ACD"
 _FASTEST = "#5C1A33"
 _MARKERS = ("o", "s", "^", "D", "v", "P")
@@ -268,11 +271,20 @@ def label_right(axes: Axes, labels: Sequence[tuple[float, str, str]], *, height:
             xytext=(1.02, position),
             xycoords=("axes fraction", "data"),
             textcoords=("axes fraction", "data"),
-            color=colour,
+            color=_text_colour(colour),
             fontsize=9,
             va="center",
             annotation_clip=False,
         )
+
+
+def _text_colour(colour: str) -> str:
+    """Return a colour, darkened at the same hue where text in it would be faint on white."""
+    srgb = np.array(to_rgb(colour))
+    linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    linear *= _DARK_ENOUGH / max(float(linear @ (0.2126, 0.7152, 0.0722)), _DARK_ENOUGH)
+    darkened = np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return to_hex((float(darkened[0]), float(darkened[1]), float(darkened[2])))
 
 
 def _moved_apart(wanted: np.ndarray, gap: float) -> np.ndarray:

@@ -25,7 +25,7 @@ from frictioncli.report.style import (
     style_context,
 )
 from frictioncli.report.tooltips import set_tooltips
-from frictioncli.wording import change_text, number_text, speed_text
+from frictioncli.wording import change_text, speed_text
 
 _LEVEL = "#2B6CB0"
 _BAND = "#BFD4EA"
@@ -117,8 +117,7 @@ def _draw_runs(axes: Axes, document: ComparisonDocument) -> None:
     _draw_limits(axes, document, mean_level + trend.estimate * float(centred[0]))
     axes.set_ylabel(f"friction of joint {document.joint} against the mean [%]")
     axes.set_title(
-        f"First run to last: {_signed(trend.estimate)} % ({_signed(trend.ci95[0])} to"
-        f" {_signed(trend.ci95[1])})",
+        f"First run to last: {change_text(trend.estimate, trend.ci95, '%')}",
         pad=22,
     )
     if dated:
@@ -174,7 +173,3 @@ def _draw_conditions(axes: Axes, rows: Sequence[ConditionRecord]) -> None:
     note = "\nhollow: not all runs have measured this temperature" if extrapolated else ""
     axes.set_xlabel(f"change of friction at the usual load, first run to last [%]{note}")
     axes.set_title("Change at reference conditions, 95 % intervals")
-
-
-def _signed(value: float) -> str:
-    return f"{'+' if value > 0 else ''}{number_text(value, 2)}"

@@ -19,7 +19,7 @@ def page_of(found, pages=None):
     ("verdict", "begins"),
     [
         ("changed", "The joint has changed. "),
-        ("no_evidence", "No change was found, and one of "),
+        ("no_evidence", "No change was found, and a change of "),
         ("undetermined", "Undetermined: "),
     ],
 )

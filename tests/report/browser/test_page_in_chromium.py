@@ -14,12 +14,35 @@ from frictioncli.report.results import read_results
 from frictioncli.stages.evaluate import evaluate
 from frictioncli.wording import number_text
 from tests.report.diagnosis_documents import extended_document
+from tests.report.test_contrast import contrast
 
 HOSTILE = (
     "</script><script>window.broken = 1</script><img src=x onerror='window.broken = 2'>\u202e$x$"
 )
 GRID = EvaluationGrid(k=(1.0, 2.5, 5.0, 10.0), tmax=(1800.0, 3600.0, 14400.0))
 WIDTHS = (390, 1440)
+
+
+TEXT_COLOURS = """
+const found = new Map();
+const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+while (texts.nextNode()) {
+  const element = texts.currentNode.parentElement, text = texts.currentNode.data.trim();
+  const hidden = "script, style, noscript, title, desc";
+  if (!text || element.closest(hidden) || !element.checkVisibility()) continue;
+  const figure = element.closest("svg"), style = getComputedStyle(element);
+  const filtered = figure !== null && getComputedStyle(figure).filter !== "none";
+  let ground = figure && filtered ? null : element;
+  while (ground && getComputedStyle(ground).backgroundColor === "rgba(0, 0, 0, 0)") {
+    ground = ground.parentElement;
+  }
+  const below = ground ? getComputedStyle(ground).backgroundColor : "rgb(255, 255, 255)";
+  const seen = [figure ? style.fill : style.color, below, filtered];
+  found.set(seen.join(), [...seen, text.slice(0, 30)]);
+}
+return [...found.values()];
+"""
+"""Colours of all texts: the text's, that below it, whether a filter inverts both, an example."""
 
 
 @pytest.fixture(scope="module")
@@ -318,6 +341,30 @@ def test_the_page_follows_a_dark_screen(opened):
         ]
     assert found["light"][0] == "rgb(255, 255, 255)"
     assert all(light != dark for light, dark in zip(*found.values(), strict=True))
+
+
+def test_all_text_stands_out(opened):
+    """By WCAG 2.1 AA, on the page and in its figures, on light and on dark screens."""
+    for scheme in ("light", "dark"):
+        found = opened(scheme=scheme).execute_script(TEXT_COLOURS)
+        assert len(found) > 8
+        faint = {
+            text: ratio
+            for colour, ground, filtered, text in found
+            if (ratio := contrast(*(seen(one, filtered=filtered) for one in (colour, ground))))
+            < 4.5
+        }
+        assert faint == {}
+
+
+def seen(colour, *, filtered):
+    """A colour rgb(r, g, b) as #rrggbb; of a figure in the dark inverted, its hue turned back."""
+    channels = np.array([float(one) for one in re.findall(r"[\d.]+", colour)[:3]]) / 255
+    if filtered:
+        inverted = channels * (1 - 2 * 0.915) + 0.915
+        grey = np.array([0.213, 0.715, 0.072])  # of the filter, not of WCAG
+        channels = np.clip(2 * grey @ inverted - inverted, 0, 1)
+    return "#" + "".join(f"{round(255 * one):02x}" for one in channels)
 
 
 def test_print_is_a_summary_that_says_what_it_leaves_out(opened):
