@@ -125,16 +125,13 @@ def _period(document: ComparisonDocument) -> str:
 
 
 def _verdict(document: ComparisonDocument) -> str:
-    margin = f"{number_text(document.margin.value, 2)} %"
-    trend = _percent(document.trend.percent)
+    change = f"a change of {number_text(document.margin.value, 2)} %"
+    trend = f"Friction, first run to last: {_percent(document.trend.percent)}."
     if document.verdict == "changed":
-        return f"The joint has changed. Friction, first run to last: {trend}."
+        return f"The joint has changed. {trend}"
     if document.verdict == "no_evidence":
-        return f"No change was found, and a change of {margin} is ruled out. First run to last: {trend}."
-    return (
-        f"Undetermined: no change was found, but a change of {margin} is not ruled out. First run to"
-        f" last: {trend}."
-    )
+        return f"No change was found, and {change} is ruled out. {trend}"
+    return f"Undetermined: no change was found, but {change} is not ruled out. {trend}"
 
 
 def _caveats(document: ComparisonDocument) -> list[str]:

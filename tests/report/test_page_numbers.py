@@ -12,7 +12,8 @@ from frictioncli import schemas, tables
 from frictioncli.report import drawing
 from frictioncli.report.page import write_report
 from frictioncli.wording import in_words, number_text
-from tests.report.page_numbers import Page, agrees, numbers
+from tests.report.page_numbers import Page, agrees, numbers, value
+from tests.report.plan_document import PLAN
 
 FIXED = {
     *range(3, 22),  # figures and equations of the paper
@@ -31,6 +32,31 @@ FIXED = {
 }
 """Numbers that stand in the sentences themselves."""
 
+TABLES = (
+    "Parameters of both models",
+    "Blocks in order",
+    "Half-widths of 95 % intervals",
+    "day-1: error",
+    "day-2: error",
+    "day-1: the same where",
+    "day-2: the same where",
+    "Largest mean errors",
+    "Smallest size of each effect",
+    "Parameters of the friction function",
+    "Correlations of the estimates",
+    "Pairs per speed and phase",
+    "Reading",
+    "Rejected rows and files",
+    "Samples used and left out",
+)
+"""Beginnings of the captions of all tables on the page, in order; each has a test below."""
+
+CORRELATION = {
+    "tau_c": {"tau_c": 1.0, "beta": -0.954, "delta": 0.37},
+    "beta": {"tau_c": -0.954, "beta": 1.0, "delta": 0.5},
+    "delta": {"tau_c": 0.37, "beta": 0.5, "delta": 1.0},
+}
+
 UNDETERMINED = [-3.25, 34.5]
 """Interval of the extended model's gamma, which spans 0."""
 
@@ -40,6 +66,12 @@ def work(tmp_path_factory, write_work, diagnosed_work):
     """A work folder with everything, and its page; figures are captioned but not drawn."""
     work = write_work(tmp_path_factory.mktemp("numbers"))
     copyfile(diagnosed_work / "diagnosis.json", work / "diagnosis.json")
+    model = json.loads((work / "model.json").read_text(encoding="utf-8"))
+    model["correlation"] = CORRELATION
+    (work / "model.json").write_text(json.dumps(model), encoding="utf-8")
+    (work / "plan.json").write_text(json.dumps(PLAN), encoding="utf-8")
+    for name in PLAN["programme"]["files"]:
+        (work / name).write_text("speed_deg_s\n", encoding="utf-8")
     extended = json.loads((diagnosed_work / "extended-model.json").read_text(encoding="utf-8"))
     extended["parameters"]["gamma"]["ci95"] = UNDETERMINED
     (work / "extended-model.json").write_text(json.dumps(extended), encoding="utf-8")
@@ -68,7 +100,7 @@ def page(work):
 def documents(work):
     return {
         name: json.loads((work / f"{name}.json").read_text(encoding="utf-8"))
-        for name in ("model", "extended-model", "diagnosis")
+        for name in ("model", "extended-model", "diagnosis", "plan")
     }
 
 
@@ -109,24 +141,92 @@ def test_both_models_stand_beside_each_other(page, documents):
     assert any("do not determine γ, not even the sign" in text for _, _, text in page.texts)
 
 
-def test_errors_are_those_of_the_evaluation(page, work):
+def test_every_table_is_walked(page):
+    # the table of the explorer is filled by its script
+    captions = [caption for caption in page.tables if caption]
+    assert len(captions) == len(TABLES)
+    assert all(map(str.startswith, captions, TABLES))
+
+
+CRITERIA = {
+    "first degree": "first_degree",
+    "latest degree": "latest_degree",
+    "equally spaced": "equal",
+    "uncertainty": "uncertainty",
+}
+
+
+@pytest.mark.parametrize(("title", "column"), [("error", "k"), ("the same where", "bound")])
+def test_errors_are_those_of_the_evaluation(page, work, title, column):
     rows = tables.read(work / "evaluation.parquet", schemas.EVALUATION)
-    first = rows[rows["criterion"] == "first_degree"].set_index(["run", "phase", "k"])
     seen = 0
     for run in ("day-1", "day-2"):
-        groups, header, *body = table(page, f"{run}: error")
-        criteria = header[2:]
-        half = len(criteria) // 2
+        groups, header, without, *body = table(page, f"{run}: {title}")
+        half = sum(name in CRITERIA for name in header) // 2
         assert groups[1:] == ["heating", "cooling"]
-        for row in body[1:]:
-            k = float(row[0].removeprefix("k = "))
-            for place, phase in ((2, "heat-up"), (2 + half, "cool-down")):
-                assert header[place] == "first degree"
-                one = first.loc[(run, phase, k)]
+        own = rows[rows["run"] == run]
+        for phase, place in (("heat-up", -2 * half), ("cool-down", -half)):
+            (none,) = own[(own["criterion"] == "none") & (own["phase"] == phase)]["epsilon"]
+            assert without[place] == f"{number_text(none)} (0)"
+        keyed = own.set_index(["phase", "criterion", column])
+        for row in body:
+            setting = float(row[0].removeprefix("k = "))
+            for place, name in enumerate(header):
+                if name not in CRITERIA:
+                    continue
+                phase = "heat-up" if place < len(header) - half else "cool-down"
+                key = (phase, CRITERIA[name], setting)
+                if key not in keyed.index:
+                    assert row[place] == "–"
+                    continue
+                one = keyed.loc[key]
                 failed = f", {one['failed']} failed" if one["failed"] else ""
                 assert row[place] == f"{number_text(one['epsilon'])} ({one['corrections']}{failed})"
                 seen += 1
     assert seen > 10
+
+
+def test_correlations_are_those_of_the_model(page):
+    (_, *names), *body = table(page, "Correlations of the estimates")
+    keys = dict(zip(names, CORRELATION, strict=True))
+    for row in body:
+        for name, cell in zip(names, row[1:], strict=True):
+            if cell:
+                assert agrees(cell.removeprefix("+"), [CORRELATION[keys[row[0]]][keys[name]]])
+    assert [row[1] for row in body] == ["1", "−0.95", "+0.37"]
+
+
+def test_the_next_experiment_is_that_of_the_plan(page):
+    blocks = PLAN["programme"]["blocks"]
+    rows = table(page, "Blocks in order")[1:]
+    assert [row[0] for row in rows] == [block["name"] for block in blocks]
+    for row, block in zip(rows, blocks, strict=True):
+        assert row[1:3] == [block["reason"], "1"]
+        assert agrees(row[3], [block["duration_s"] / 60])
+    (row,) = table(page, "Half-widths of 95 % intervals")[1:]
+    one = PLAN["intervals"][0]
+    assert row[0] == "run-in: travel"
+    for cell, key in zip(row[1:4], ("estimate", "half_width_now", "half_width_after"), strict=True):
+        assert agrees(cell.removeprefix("±"), [one[key]])
+    assert row[4] == one["unit"]
+
+
+def test_counts_are_those_of_reading_and_pairing(page, work):
+    recordings = tables.read(work / "recordings.parquet", schemas.RECORDINGS)
+    columns = ["rows_read", "rows_kept", "rows_rejected"]
+    for run, files, *counts in table(page, "Reading")[1:]:
+        own = recordings[recordings["run"] == run]
+        assert int(files) == len(own)
+        assert [value(count) for count in counts] == own[columns].sum().tolist()
+    rejected = tables.read(work / "rejected.parquet", schemas.REJECTED)["reason"].value_counts()
+    found = {reason: int(count) for reason, count in table(page, "Rejected rows and files")[1:]}
+    assert found == rejected.to_dict()
+    torques = tables.read(work / "torques.parquet", schemas.TORQUES)
+    used = int(torques[["n_forward", "n_reverse"]].to_numpy().sum())
+    wanted = {**tables.facts(work / "pairs.parquet")["dropped"], "used in pairs": used}
+    assert {
+        reason: value(count) for reason, count in table(page, "Samples used and left out")[1:]
+    } == wanted
 
 
 def test_pairs_are_those_of_the_torques(page, work):
