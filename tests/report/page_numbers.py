@@ -69,3 +69,16 @@ def agrees(written, values):
     half = 0.5 * 10.0 ** (int(exponent or 0) - decimals)
     shown = value(written)
     return any(abs(shown - one) <= half * (1 + 1e-9) + 1e-12 for one in values)
+
+
+def leaves(document):
+    """All numbers of a document."""
+    if isinstance(document, dict):
+        for key, one in document.items():
+            if key != "provenance":
+                yield from leaves(one)
+    elif isinstance(document, (list, tuple)):
+        for one in document:
+            yield from leaves(one)
+    elif isinstance(document, (int, float)) and not isinstance(document, bool):
+        yield float(document)

@@ -1,12 +1,18 @@
 """The page of a comparison tells what ``comparison.json`` holds."""
 
+import re
+
 import msgspec
 import pytest
 
+from frictioncli import __version__
 from frictioncli.comparison.document import ParameterChangeRecord
 from frictioncli.report.compare_page import compare_html, compare_page
 from frictioncli.wording import change_text
+from tests.report.page_numbers import Page, agrees, leaves, numbers
 from tests.report.test_trend_figure import document
+
+DATE = re.compile(r"\d{4}-\d\d-\d\d")
 
 SVG = '<svg viewBox="0 0 1 1"></svg>'
 
@@ -64,3 +70,24 @@ def test_the_page_holds_the_figure_and_links_to_reports():
     assert SVG in html
     assert f'<a href="../a%20b/report/index.html">{found.folders[0]}</a>' in html
     assert "default-src 'none'" in html
+
+
+def test_every_number_has_a_source():
+    parameters = {
+        "tau_c": ParameterChangeRecord(first=10.2, last=11.7, change=None, ci95=None, unit="N·m")
+    }
+    found = msgspec.structs.replace(document(), parameters=parameters)
+    page = Page(compare_html(found, SVG, {}))
+    sources = [*leaves(msgspec.to_builtins(found)), len(found.runs), len(found.folders)]
+    # confidence, and hours of a rate
+    sources += [-one for one in sources] + [95.0, 1000.0]
+    cells = [
+        cell for tables in page.tables.values() for rows in tables for row in rows for cell in row
+    ]
+    walked = [
+        (written, text)
+        for text in (*cells, *page.tables, *(text for _, _, text in page.texts))
+        for written in numbers(DATE.sub("", text.replace(__version__, "")))
+    ]
+    assert len(walked) > 30
+    assert [one for one in walked if not agrees(one[0], sources)] == []

@@ -12,7 +12,7 @@ from frictioncli import schemas, tables
 from frictioncli.report import drawing
 from frictioncli.report.page import write_report
 from frictioncli.wording import in_words, number_text
-from tests.report.page_numbers import Page, agrees, numbers, value
+from tests.report.page_numbers import Page, agrees, leaves, numbers, value
 from tests.report.plan_document import PLAN
 
 FIXED = {
@@ -108,19 +108,6 @@ def table(page, beginning):
     """The only table whose caption begins so: rows of stripped cells."""
     ((rows,),) = [found for caption, found in page.tables.items() if caption.startswith(beginning)]
     return [[cell.strip() for cell in row] for row in rows]
-
-
-def leaves(document):
-    """All numbers of a document."""
-    if isinstance(document, dict):
-        for key, one in document.items():
-            if key != "provenance":
-                yield from leaves(one)
-    elif isinstance(document, list):
-        for one in document:
-            yield from leaves(one)
-    elif isinstance(document, (int, float)) and not isinstance(document, bool):
-        yield float(document)
 
 
 def test_parameters_are_those_of_the_model(page, documents):
