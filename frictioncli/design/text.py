@@ -93,8 +93,9 @@ def _blocks_text(plan: Plan, first: int, last: int, *, tell: bool) -> list[str]:
     block, start, end = plan.blocks[first], plan.timings[first], plan.timings[last]
     count = last - first + 1
     number = f"{first + 1}." if count == 1 else f"{first + 1}-{last + 1}."
-    low, high = start.temperatures[0], end.temperatures[1]
-    warm = f", motor {low:.0f} to {high:.0f} °C" if low == low else ""
+    low, high = (f"{one:.0f}" for one in (start.temperatures[0], end.temperatures[1]))
+    span = low if low == high else f"{low} to {high}"
+    warm = "" if low == "nan" else f", motor {span} °C"
     often = f", {count} times" if count > 1 else ""
     lines = [
         f"  {number:>6s} {_clock(start.start)} {block.name}{often}"

@@ -85,8 +85,8 @@ def test_what_is_left_is_said_with_size_and_axis():
     said = "\n".join(lines(sets=[["coulomb_temperature"]], remainder=left))
     assert (
         "Unexplained structure remains: on run day-2 the torque error of the extended model is"
-        " 1.4 N·m (RMS), where noise alone is 0.67 N·m. The difference is 1.2 N·m; most of it,"
-        " 0.95 N·m in the friction, varies with time."
+        " 1.4 N·m (RMS), where noise alone is 0.67 N·m. Without the noise (difference of the"
+        " squares) the error is 1.2 N·m; most of it, 0.95 N·m in the friction, varies with time."
     ) in said
     whole = structs.replace(left, axis="run")
     said = "\n".join(lines(sets=[["coulomb_temperature"]], remainder=whole))

@@ -68,6 +68,6 @@ def remainder_text(document: DiagnosisDocument) -> str:
     return (
         f"Unexplained structure remains: {on} the torque error of the {model} model is"
         f" {number_text(left.rmse, 2)} {unit} (RMS), where noise alone is"
-        f" {number_text(left.noise_floor, 2)} {unit}. The difference is {number_text(left.size, 2)}"
-        f" {unit}; {varies}."
+        f" {number_text(left.noise_floor, 2)} {unit}. Without the noise (difference of the"
+        f" squares) the error is {number_text(left.size, 2)} {unit}; {varies}."
     )
