@@ -75,6 +75,16 @@ def test_values_are_those_of_the_rows_and_sorting_orders_them(opened):
     assert "friction at 40" in pressed.get_attribute("textContent")
 
 
+def test_headings_sort_by_the_keyboard(opened):
+    opened.execute_script("document.querySelectorAll('.sort')[1].focus()")
+    for order, joint in (("ascending", "1"), ("descending", "6")):
+        opened.switch_to.active_element.send_keys("\ue007")  # the key for enter
+        head = opened.find_element("css selector", f'[aria-sort="{order}"]')
+        assert head.text.startswith("joint")
+        assert texts(opened, 2)[0] == joint
+        assert opened.switch_to.active_element.text.startswith("joint")
+
+
 def test_rows_are_drawn_as_far_as_they_are_looked_at(opened):
     assert 100 <= len(texts(opened, 1)) <= 300
     opened.execute_script("scrollTo(0, document.body.scrollHeight)")
