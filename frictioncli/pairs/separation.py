@@ -313,7 +313,7 @@ def separation_text(
         )
         lines.append(
             f"joint {joint}: forward torque is {convention} (sign {sign:+d},"
-            f" {'as told' if given else 'inferred'}), friction {friction}"
+            f" {'as given' if given else 'inferred'}), friction {friction}"
             f" {unit}, load {load} {facts.get('load_unit', unit)}"
         )
     return "\n".join(lines)
