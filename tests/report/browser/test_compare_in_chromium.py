@@ -34,3 +34,14 @@ def test_links_and_buttons_are_reached_by_keyboard(chromium, page):
         chromium.switch_to.active_element.send_keys("\ue004")  # the key for tab
         reached.append(chromium.switch_to.active_element.get_attribute("textContent").strip())
     assert {"SVG", "PNG", document().folders[0], "comparison.json", "trend.svg"} <= {*reached}
+
+
+def test_print_has_no_links_to_files(chromium, page):
+    chromium.get(page.as_uri())
+    shown = """return [...document.querySelectorAll(arguments[0])].some(
+        (element) => element.checkVisibility())"""
+    for media, links in (("", True), ("print", False)):
+        chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": media})
+        assert chromium.execute_script(shown, "a[href]") is links
+        assert chromium.execute_script(shown, "#trend svg, table")
+    chromium.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
