@@ -46,8 +46,9 @@ def plan_text(
         counts = Counter(block.name for block in plan.check)
         names = [f"{name} ({n} times)" if n > 1 else name for name, n in counts.items()]
         lines.append(f"  next day, cold, as a check: {', '.join(names)}")
-        lines.append("    log each day as a separate run: diagnose fits all but the last, and")
-        lines.append("    tests on that one")
+        lines.append(
+            "    log each day as a separate run: diagnose fits all but the last and tests on it"
+        )
     lines += [_interval_text(one) for one in interval_records(plan, units, stated) if one.wide]
     limits = plan.limits
     lines.append(
