@@ -8,6 +8,7 @@ from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import units
 from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.joint_plan import JointPlan, plan_joint
+from frictioncli.logs.channels.simulated import command_columns, warn_of_simulation
 from frictioncli.logs.channels.survey import Survey, survey
 from frictioncli.logs.channels.torque_choice import choose_torques
 from frictioncli.logs.channels.torque_constant import TorqueConstant
@@ -84,7 +85,13 @@ def _plans_of_layout(
     constants: Constants,
 ) -> list[JointPlan] | Refusal:
     first = logs[0]
-    surveyed = survey([log.source for log in logs], first.channels, first.joints[0].time.column)
+    commands = command_columns(first.source.columns, first.channels)
+    surveyed = survey(
+        [log.source for log in logs],
+        first.channels,
+        first.joints[0].time.column,
+        commands.values(),
+    )
     forced = {**channel_map.units, **settings.forced_units()}
     ratio = settings.gear_ratio if settings.gear_ratio is not None else channel_map.gear_ratio
     if ratio is not None and len(first.joints) > 1:
@@ -99,7 +106,7 @@ def _plans_of_layout(
     if isinstance(told, float | int):
         one = TorqueConstant(float(told), None, "as given")
         constants = {channels.joint: one for channels in first.joints}
-    chosen = choose_torques(first.joints, surveyed)
+    chosen = warn_of_simulation(choose_torques(first.joints, surveyed), commands, surveyed)
     found = [
         plan_joint(
             joint,

@@ -169,3 +169,27 @@ def test_counts_and_counts_per_second_are_not_explained_by_microseconds(tmp_path
     columns = {"t": time, "position": counts, "velocity": np.round(velocity * 2**17 / 3.6)}
     with pytest.raises(LogError, match=r"counts\?; give the angle of one pulse"):
         warnings_of(tmp_path, columns | {"torque_Nm": torque})
+
+
+def test_a_position_that_repeats_its_command_is_no_measured_one(tmp_path):
+    """Simulators and mock drives return the command, at once or some rows later."""
+    time, position, gravity, friction = swings()
+    columns = {"t": time, "actual_q_1_deg": position, "target_q_1_deg": position}
+    columns["tau_1_Nm"] = gravity + friction
+    (warning,) = warnings_of(tmp_path, columns)
+    assert "actual_q_1_deg repeats its command in 100 % of the rows" in warning
+    (warning,) = warnings_of(tmp_path, columns | {"target_q_1_deg": np.roll(position, -2)})
+    assert "repeats its command" in warning
+    # a drive follows some milliseconds later
+    columns["target_q_1_deg"] = 60 * np.sin(2 * np.pi * (time + 0.005) / 12)
+    assert warnings_of(tmp_path, columns) == ()
+
+
+def test_a_torque_without_noise_is_that_of_a_model(tmp_path):
+    time, position, _, _ = swings()
+    speed = np.cos(2 * np.pi * time / 12)
+    model = 30 * np.cos(np.radians(position)) + np.sign(speed) * (2 + np.abs(speed))
+    (warning,) = warnings_of(tmp_path, {"t": time, "q_deg": position, "tau_Nm": model})
+    assert "tau_Nm has no noise: simulated" in warning
+    noise = np.random.default_rng(2).normal(0, 0.01, len(time))
+    assert warnings_of(tmp_path, {"t": time, "q_deg": position, "tau_Nm": model + noise}) == ()

@@ -35,7 +35,7 @@ _JOINT_FIRST = re.compile(
     r"[ _.\-]+(?P<name>.+)$",
     re.I,
 )
-_MEASURED = re.compile(
+MEASURED = re.compile(
     r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|msr|present|inst|ist|value"
     r"|averaged|average|avg|joint[ _]?states?)(?=$|[ _.\-\d])",
     re.I,
@@ -190,7 +190,7 @@ def _spellings(name: str) -> list[str]:
         texts = ["_".join(path[-2:]), path[-1]]
     elif len(path) > 2 and _JOINT_ALONE.match(path[-2]):
         texts.append("_".join(path[-2:]))
-    spaced = [_MEASURED.sub("", WORD_ENDS.sub(" ", text)) for text in texts]
+    spaced = [MEASURED.sub("", WORD_ENDS.sub(" ", text)) for text in texts]
     plain = [" ".join(text.replace("_", " ").split()) for text in spaced]
     return [*texts, *(text for text in plain if text)]
 

@@ -1,6 +1,6 @@
 """The first rows of logs with one layout, from which their units are inferred."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 
@@ -71,7 +71,12 @@ class Survey:
         return [axes[i] for i in range(3)] if len(axes) == 3 else []
 
 
-def survey(sources: Sequence[LogSource], channels: Sequence[LogChannel], time: int) -> Survey:
+def survey(
+    sources: Sequence[LogSource],
+    channels: Sequence[LogChannel],
+    time: int,
+    others: Collection[int] = (),
+) -> Survey:
     """Read the beginnings of up to 16 logs with one layout, evenly spaced among them.
 
     Where a log begins at rest, the batches after the first are skipped until an axis moves.
@@ -84,9 +89,11 @@ def survey(sources: Sequence[LogSource], channels: Sequence[LogChannel], time: i
         The recognised columns, the same in all logs.
     time : int
         Column of the time.
+    others : collection of int, optional
+        Further columns.
     """
     spaced = np.unique(np.linspace(0, len(sources) - 1, _MAX_FILES).astype(int))
-    wanted = sorted({channel.column for channel in channels})
+    wanted = sorted({*others, *(channel.column for channel in channels)})
     positions = [channel.column for channel in channels if channel.quantity == names.POSITION]
     rows = int(np.clip(_MAX_VALUES // (len(spaced) * len(wanted)), _MIN_ROWS, _MAX_ROWS))
     heads = [_head(sources[i], wanted, positions, time, rows) for i in spaced]
