@@ -359,6 +359,14 @@ def test_times_that_no_clock_has_are_no_hindrance(tmp_path):
         assert "[channels]" in suggested_map([path], IngestSettings())
 
 
+def test_times_of_a_speed_alone_that_do_not_change_are_no_hindrance(tmp_path):
+    lines = ["time [s];velocity [deg/s];torque [Nm]"]
+    lines += [f"-1e300;{i % 7};{5 + i % 3}" for i in range(300)]
+    (tmp_path / "log.csv").write_text("\n".join(lines))
+    with pytest.raises(LogError, match="grows from row to row"):
+        suggested_map([tmp_path / "log.csv"])
+
+
 def test_the_form_of_the_text_is_repeated(tmp_path):
     """Without it the log would have no time, and numbers that are none."""
     log = clean_log(4)

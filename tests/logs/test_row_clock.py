@@ -65,3 +65,10 @@ def test_a_period_that_is_none(tmp_path, period):
         MappingError, match=r"\[csv\] period = .*; expected the time from row to row"
     ):
         read_map(mapped(tmp_path, period))
+
+
+def test_a_number_beyond_the_columns_is_not_the_time_that_is_made(tmp_path):
+    log = tmp_path / "log.csv"
+    log.write_text("".join(f"{p:.6f},{u}\n" for p, u in zip(POSITION, TORQUE, strict=True)))
+    with pytest.raises(MappingError, match=r"names column '3' as torque, but that is the time"):
+        ingest([log], tmp_path / "work", IngestSettings(map_file=mapped(tmp_path)))

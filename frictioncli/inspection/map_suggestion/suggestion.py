@@ -110,7 +110,7 @@ def suggest_columns(
     time, derivatives = _time_with_derivatives(head, times)
     columns = log_columns(head, time.column)
     time_columns = frozenset(one.column for one in times)
-    integrated = next((p for p in plans if p.channels.position.name == names.INTEGRATED), None)
+    integrated = next((plan for plan in plans if _is_integrated(plan, head)), None)
     if integrated is not None:
         return _at_side(Suggestion(*columns_as_read(columns, times, integrated)), integrated)
     try:
@@ -154,6 +154,12 @@ def _payload_as_read(plan: JointPlan) -> ColumnGuess | None:
     if channel is None or conversion is None:
         return None
     return ColumnGuess(channel.column, "its name says so", LIKELY, conversion.unit)
+
+
+def _is_integrated(plan: JointPlan, head: LogHead) -> bool:
+    """Return whether a position is made from the velocity, over a time that changes."""
+    channels = plan.channels
+    return channels.position.name == names.INTEGRATED and channels.time.column in head.values
 
 
 def _at_side(suggestion: Suggestion, plan: JointPlan | None) -> Suggestion:

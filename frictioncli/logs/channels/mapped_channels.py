@@ -55,6 +55,12 @@ def mapped_channels(
                 f"no column {wanted!r}, which the map names as {quantity}{hint}; columns found:"
                 f" {', '.join(names[:20])}",
             )
+        if any(c.column == index and c.quantity == TIME for c in kept):
+            return Refusal(
+                "mapped_column_missing",
+                f"the map names column {wanted!r} as {quantity}, but that is the time,"
+                f" {columns[index][:_COMPARED]!r}; expected another column",
+            )
         known = next((c.meaning for c in recognised if c.column == index), None)
         if known is not None and known.quantity != quantity:
             known = None
