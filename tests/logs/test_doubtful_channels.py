@@ -93,6 +93,35 @@ def test_a_motor_that_turns_on_may_be_logged_in_radians(tmp_path):
     assert not any("read as deg" in text for text in warnings_of(tmp_path, columns, forced))
 
 
+def test_gravity_or_round_turning_points_show_degrees(tmp_path):
+    time, position, gravity, friction = swings()
+    columns = {"t": time, "position": 0.9 * position + 4, "torque_Nm": gravity + friction}
+    # from -50 to 58, with the gravity of these angles
+    columns["torque_Nm"] = 30 * np.cos(np.radians(columns["position"])) + friction
+    assert warnings_of(tmp_path, columns) == ()
+    # without gravity, but from -60 to 60
+    columns |= {"position": position, "torque_Nm": friction}
+    assert warnings_of(tmp_path, columns) == ()
+    columns["position"] = 0.9 * position
+    (warning,) = warnings_of(tmp_path, columns)
+    assert "--position-unit rad" in warning
+
+
+@pytest.mark.parametrize(("end", "unit"), [(100.0, "deg"), (1.0, "rad")])
+def test_positions_relative_to_the_range(end, unit, tmp_path):
+    time, position, gravity, friction = swings()
+    relative = np.clip(position / 59 * end, -end, end)
+    columns = {"t": time, "pos_1": relative, "pos_2": 0.9 * relative}
+    columns |= {"torque_1_Nm": gravity + friction, "torque_2_Nm": gravity + friction}
+    (warning,) = warnings_of(tmp_path, columns)
+    assert f"ends exactly at ±{end:g}" in warning
+    assert f"read as {unit}" in warning
+    columns |= {"pos_1": 0.7 * relative, "pos_2": 0.6 * relative}
+    assert warnings_of(tmp_path, columns) == ()
+    columns = {name.replace("pos", "observation.state"): one for name, one in columns.items()}
+    assert all("stays within" in warning for warning in warnings_of(tmp_path, columns))
+
+
 def test_counts_that_no_velocity_explains_are_refused(tmp_path):
     time, position, velocity, torque = back_and_forth()
     counts = np.round(position * 4096 / 360) + 2048

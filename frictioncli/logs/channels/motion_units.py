@@ -7,6 +7,7 @@ from frictioncli.arrays import Array
 from frictioncli.logs.channels import channel_names as names
 from frictioncli.logs.channels import position_units, surveyed_motion, unit_evidence, units
 from frictioncli.logs.channels.joint_channels import JointChannels
+from frictioncli.logs.channels.position_scale import warnings_of_scale
 from frictioncli.logs.channels.position_units import wraps_as_of_mit_protocol
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.survey import Survey
@@ -47,15 +48,25 @@ class JointMotion:
 
 @dataclass(frozen=True, slots=True)
 class _Axis:
-    """Time, position and velocity on one side of the gear.
+    """A joint's channels with position and velocity on one side of the gear.
 
     ``hint`` is the end of a note that tells the user how to force the position's unit.
     """
 
-    time: LogChannel
-    position: LogChannel
-    velocity: LogChannel | None
+    channels: JointChannels
     hint: str
+
+    @property
+    def time(self) -> LogChannel:
+        return self.channels.time
+
+    @property
+    def position(self) -> LogChannel:
+        return self.channels.position
+
+    @property
+    def velocity(self) -> LogChannel | None:
+        return self.channels.velocity
 
 
 def joint_motion(
@@ -74,16 +85,17 @@ def joint_motion(
     remarks : Remarks
         Notes and warnings are added here.
     """
-    time, position, velocity = channels.time, channels.position, channels.velocity
-    other_position = channels.other_position
-    same_side = velocity is None or velocity.meaning.side == position.meaning.side
-    axis = _Axis(time, position, velocity if same_side else None, "; force with --position-unit {}")
+    time, velocity, other_position = channels.time, channels.velocity, channels.other_position
+    same_side = velocity is None or velocity.meaning.side == channels.position.meaning.side
+    own = replace(channels, velocity=velocity if same_side else None)
+    axis = _Axis(own, "; force with --position-unit {}")
     found, largest_position, doubt = _axis_units(axis, survey, forced, remarks)
     other_unit = None
     if other_position is not None:
         # a forced position unit applies to the other channel
         other_forced = {name: unit for name, unit in forced.items() if name != names.POSITION}
-        axis = _Axis(time, other_position, None if same_side else velocity, "")
+        other = replace(channels, position=other_position, velocity=None if same_side else velocity)
+        axis = _Axis(other, "")
         other_units, _, _ = _axis_units(axis, survey, other_forced, remarks)
         other_unit = other_units.position
         if not same_side:
@@ -176,9 +188,7 @@ def _axis_units(
                     " position in --map"
                 )
     found = _with_forced_units(found, forced, remarks)
-    # an arm with joints that turn further than a turn in rad is logged in deg
-    is_one_of_many = len({c.joint for c in survey.channels if c.quantity == names.POSITION}) > 1
-    _remark_position(axis, found, why, 0.0 if is_one_of_many else largest, forced, remarks)
+    _remark_position(axis, found, why, survey, forced, remarks)
     if axis.velocity is not None:
         _remark_velocity(axis.velocity, found, forced, remarks)
     return found, largest, doubt
@@ -232,7 +242,7 @@ def _remark_position(
     axis: _Axis,
     found: MotionUnits,
     why: str,
-    largest: float,
+    survey: Survey,
     forced: Mapping[str, str],
     remarks: Remarks,
 ) -> None:
@@ -246,27 +256,18 @@ def _remark_position(
             " give another with --position-unit, or its size with [scale] position in --map"
         )
         return
+    tells = axis.velocity is not None and (
+        _written_unit(axis.velocity) or found.velocity not in (None, "deg/s")
+    )
+    if written is None and not tells and position.name != names.INTEGRATED:
+        remarks.warnings += warnings_of_scale(axis.channels, survey, found.position)
     if written is None and found.position == "deg":
-        _warn_of_turns(axis, found, largest, remarks)
         return
     says = f"says {position.unit}" if position.unit else "has no unit"
     other = "rad" if found.position == "deg" else "deg"
     reason = "; ".join(text for text in (why, found.evidence) if text)
     remarks.notes.append(
         f"{position.name} {says}, {reason}: read as {found.position}{axis.hint.format(other)}"
-    )
-
-
-def _warn_of_turns(axis: _Axis, found: MotionUnits, largest: float, remarks: Remarks) -> None:
-    """Warn of a position that goes beyond a turn in rad, and that nothing shows to be in deg."""
-    tells = axis.velocity is not None and (
-        _written_unit(axis.velocity) or found.velocity not in (None, "deg/s")
-    )
-    if largest <= position_units.RADIAN_LIMIT or tells or axis.position.name == names.INTEGRATED:
-        return
-    remarks.warnings.append(
-        f"{axis.position.name} has no unit and reaches {largest:.4g}: read as deg; if it is the"
-        " angle in rad of a motor that turns on, say so with --position-unit rad"
     )
 
 

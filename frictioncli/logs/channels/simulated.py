@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from frictioncli.arrays import Array
+from frictioncli.arrays import Array, Flags
 from frictioncli.logs.channels.column_name import MEASURED, WORD_ENDS, key_of, split_unit
 from frictioncli.logs.channels.joint_channels import JointChannels
 from frictioncli.logs.channels.named_joints import COMMAND
@@ -93,9 +93,7 @@ def _warnings(channels: JointChannels, commands: dict[int, int], survey: Survey)
     found = []
     for channel in (channels.position, channels.torque):
         command = commands.get(channel.column)
-        pairs = [
-            (head[channel.column], head[command]) for head in survey.heads if command in head
-        ]
+        pairs = [(head[channel.column], head[command]) for head in survey.heads if command in head]
         if pairs and (share := _repeated(pairs)) is not None:
             found.append(
                 f"{printable(channel.name)} repeats its command in {100 * share:.3g} % of the rows"
@@ -142,7 +140,7 @@ def _is_smooth(channels: JointChannels, survey: Survey) -> bool:
     return float(np.quantile(noise, 0.75)) < _SMOOTH * float(high - low)
 
 
-def _windows(steps: Array) -> Array:
+def _windows(steps: Flags) -> Flags:
     """Return for each run of consecutive steps as long as the differences whether all hold."""
     count = max(len(steps) - _ORDER + 1, 0)
-    return np.logical_and.reduce([steps[i : i + count] for i in range(_ORDER)])
+    return np.all([steps[i : i + count] for i in range(_ORDER)], axis=0)
