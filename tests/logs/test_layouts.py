@@ -216,3 +216,18 @@ def test_a_measured_payload_has_too_many_values_to_tell_moves_apart(tmp_path):
     found, notes = told(tmp_path, 2.0 + 0.01 * np.sin(TIME))
     assert np.isnan(found).all()
     assert "holds no payloads" in notes
+
+
+@pytest.mark.parametrize(
+    ("encoding", "time", "position", "torque"),
+    [
+        ("gbk", "时间(s)", "关节1位置(deg)", "关节1力矩(Nm)"),
+        ("cp932", "時刻(s)", "関節1角度(deg)", "関節1トルク(Nm)"),
+        ("big5", "時間(s)", "關節1位置(deg)", "關節1轉矩(Nm)"),
+    ],
+)
+def test_code_pages_of_chinese_and_japanese_loggers(encoding, time, position, torque, tmp_path):
+    log = write(tmp_path / "log.csv", {time: TIME, position: POSITION, torque: TORQUE}, encoding)
+    summary = ingest([log], tmp_path / "work")
+    check(samples(tmp_path / "work"), velocity_error=3.0)
+    assert any("names of columns are read as" in note for note in summary.notes)

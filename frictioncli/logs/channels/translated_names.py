@@ -38,3 +38,14 @@ def in_english(name: str) -> str:
         return name
     words = _LEFT.sub(" unlike ", _ANY.sub(lambda found: f" {_ENGLISH[found[0]]} ", name))
     return " ".join(words.split())
+
+
+def known_words(text: str) -> frozenset[str]:
+    """Return the known Chinese and Japanese words of a text.
+
+    Examples
+    --------
+    >>> sorted(known_words("关节1位置;力矩"))
+    ['位置', '关节', '力矩']
+    """
+    return frozenset(_ANY.findall(text))

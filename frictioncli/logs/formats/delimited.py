@@ -15,6 +15,7 @@ from frictioncli.logs.formats.delimited_rows import RowParser, raw_batch
 from frictioncli.logs.formats.dialect import Dialect, detect, split
 from frictioncli.logs.formats.encoding import (
     ASCII_BASED,
+    EAST_ASIAN,
     HEAD_BYTES,
     FileHead,
     LineBlock,
@@ -138,8 +139,10 @@ class DelimitedText:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is assumed of its dates."""
-        notes = (form.note(self.columns[i]) for i, form in self.dialect.dates.items())
+        """What is assumed of its dates and its characters."""
+        notes = [form.note(self.columns[i]) for i, form in self.dialect.dates.items()]
+        if self.encoding in EAST_ASIAN:
+            notes.append(f"names of columns are read as {self.encoding.upper()}")
         return tuple(note for note in notes if note)
 
     def fault(self, text: str, columns: Collection[int]) -> str:

@@ -11,6 +11,7 @@ from typing import BinaryIO
 import numpy as np
 
 from frictioncli.arrays import Numbers
+from frictioncli.logs.channels.translated_names import known_words
 from frictioncli.logs.formats.compression import STREAM_ERRORS, is_compressed, open_bytes
 from frictioncli.logs.formats.plain_numbers import line_feeds
 from frictioncli.logs.log_source import UnreadableLog
@@ -25,6 +26,9 @@ _BOMS = (
 ASCII_BASED = ("utf-8", "cp1252")
 """Encodings in which line ends and numbers are the same bytes as in ASCII."""
 _NEED_MARK = ("utf-16", "utf-32")
+EAST_ASIAN = ("gb18030", "cp932", "big5")
+"""Code pages of Chinese and Japanese loggers."""
+_LEAST_WORDS = 2
 HEAD_BYTES = 1 << 16
 """Length of the beginning from which the format is detected. [byte]"""
 _HEAD_LINES, _LONGEST_HEAD = 20, 1 << 22
@@ -114,6 +118,8 @@ def detect_encoding(head: bytes) -> str | None:
     --------
     >>> detect_encoding("Drehmoment; Gehäuse".encode("cp1252"))
     'cp1252'
+    >>> detect_encoding("时间;位置;力矩".encode("gbk"))
+    'gb18030'
     """
     for bom, encoding in _BOMS:
         if head.startswith(bom):
@@ -132,11 +138,27 @@ def detect_encoding(head: bytes) -> str | None:
     control = len(head) - len(head.translate(None, _CONTROL))
     if control > 0.02 * len(head):
         return None
+    if _decodes(head, "utf-8"):
+        return "utf-8"
+    return next((one for one in EAST_ASIAN if _names_columns(head, one)), "cp1252")
+
+
+def _decodes(head: bytes, encoding: str) -> bool:
     try:
-        codecs.getincrementaldecoder("utf-8")().decode(head)
+        codecs.getincrementaldecoder(encoding)().decode(head)
     except UnicodeDecodeError:
-        return "cp1252"
-    return "utf-8"
+        return False
+    return True
+
+
+def _names_columns(head: bytes, encoding: str) -> bool:
+    """Return whether a text has two known words of column names in an encoding.
+
+    Umlauts of Western code pages decode as characters, too, but not as these words.
+    """
+    if not _decodes(head, encoding):
+        return False
+    return len(known_words(decode_head(head, encoding))) >= _LEAST_WORDS
 
 
 def known_encoding(head: bytes, given: str | None) -> str | None:
