@@ -36,12 +36,6 @@ def test_json(tmp_path, document, told, indent):
         assert "a header line and a column for each quantity" in text
 
 
-def test_json_with_a_record_per_line(tmp_path):
-    rows = [json.dumps({"t": t, "q": t / 2}) for t in range(5)]
-    text = refused(tmp_path / "log.jsonl", "\n".join(rows))
-    assert "write its records, one per line, as a CSV table" in text
-
-
 @pytest.mark.parametrize("form", ["{:.6f}", "{:.3e}", "{:+.2f}"])
 def test_one_number_per_line(tmp_path, form):
     text = refused(tmp_path / "q.txt", "\n".join(map(form.format, np.linspace(0, 1, 50))))

@@ -80,11 +80,13 @@ def test_channels_of_another_period_are_left_out(tmp_path):
     assert any("no velocity channel" in note for note in summary.notes)
 
 
-def test_a_first_row_that_is_torn_is_counted(tmp_path):
+@pytest.mark.parametrize("parts", [lambda row: [row[:9], row[9:]], lambda row: [f"# {row}"]])
+def test_a_first_row_that_is_damaged_is_counted(parts, tmp_path):
     lines = export(timelines="all", delimiter="\t", decimal=",").split("\r\n")
     at = lines.index("", 6) + 1
-    lines[at : at + 1] = [lines[at][:9], lines[at][9:]]
+    damaged = parts(lines[at])
+    lines[at : at + 1] = damaged
     (tmp_path / "scope.csv").write_text("\r\n".join(lines), encoding="utf-8")
     summary = ingest([tmp_path / "scope.csv"], tmp_path / "work")
-    assert summary.rows_read == len(back_and_forth()[0]) + 2  # two parts, and EOF
+    assert summary.rows_read == len(back_and_forth()[0]) + len(damaged)  # and EOF
     assert summary.rows_kept == len(back_and_forth()[0]) - 1

@@ -1,5 +1,6 @@
 """Small logs as other brands, loggers and scripts write them; their clocks, units and shapes."""
 
+import json
 import struct
 from collections.abc import Iterable, Sequence
 from datetime import datetime, timedelta
@@ -37,6 +38,7 @@ def logger_layouts() -> tuple[Layout, ...]:
         _scope(),
         _universal_robots_binary(),
         _without_position(),
+        _objects(),
     )
 
 
@@ -232,3 +234,12 @@ def _without_position() -> Layout:
     """Return a log of a drive; its position is an integral, which damage changes from there on."""
     columns = {"time [s]": TIME, "velocity [deg/s]": VELOCITY, "torque [Nm]": TORQUE}
     return text_layout("velocity alone", columns, joint=1, position=None)
+
+
+def _objects() -> Layout:
+    """Return a log with a JSON object in each line, with lists of two joints."""
+    rows = [
+        json.dumps({"t": t, "state": {"pos_deg": [0.5, q], "torque_Nm": [1.0, u]}})
+        for t, q, u in np.round(np.stack((TIME, POSITION, TORQUE), axis=1), 9).tolist()
+    ]
+    return Layout("JSON objects in lines", "log.jsonl", rows=tuple(row.encode() for row in rows))

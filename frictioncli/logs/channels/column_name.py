@@ -43,9 +43,11 @@ MEASURED = re.compile(
 WORD_ENDS = re.compile(r"(?<=[a-z])(?=[A-Z])")
 """Where a word of a name in camel case ends."""
 _OF_MESSAGE = re.compile(
-    r"^(?:field|msg|data|feedback|(?:axis\d\.)?(?:encoder|controller))\.", re.I
+    r"^(?:field|msg|data|feedback|(?:robot_)?state|robot|arm|measured|actual|sensors?"
+    r"|(?:axis\d\.)?(?:encoder|controller))\.",
+    re.I,
 )
-"""What ``rostopic echo -p`` and others put before the name of each value of a message."""
+"""What ``rostopic echo -p``, objects of JSON and others put before each value of a message."""
 _SYMBOL = re.compile(r"^T[ _]?(?P<joint>\d{1,2})$", re.I)
 _PER = re.compile(r"[_ ]per[_ ]|_(?=s(?:ec)?$)", re.I)
 _NO_KEY = re.compile(r"[^a-z0-9]")

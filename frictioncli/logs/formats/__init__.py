@@ -13,6 +13,7 @@ from frictioncli.logs.formats.delimited import DelimitedText, read_delimited
 from frictioncli.logs.formats.diadem import read_diadem
 from frictioncli.logs.formats.encoding import read_head
 from frictioncli.logs.formats.hdf5 import read_hdf5
+from frictioncli.logs.formats.json_lines import read_json_lines
 from frictioncli.logs.formats.list_cells import read_list_cells
 from frictioncli.logs.formats.mdf import read_mdf
 from frictioncli.logs.formats.ros import read_ros
@@ -40,6 +41,7 @@ READERS: tuple[Reader, ...] = (
     read_mdf,
     read_ros,
     read_rtde,
+    read_json_lines,
     refuse_unsupported,
     read_struct_cells,
     read_list_cells,

@@ -57,8 +57,7 @@ def scope_dialect(lines: Sequence[str], hints: CsvHints) -> Dialect | None:
         return None
     decimal = hints.decimal or ("," if delimiter != "," and "," in lines[first] else ".")
     unit = "100ns" if _number(rows[first][0]) > _FILETIME else "ms"
-    # rows that begin with a number are damaged ones; what stands above begins with a key
-    while rows[first - 1] and _number(rows[first - 1][0]) == _number(rows[first - 1][0]):
+    while _is_damaged(rows[first - 1]):
         first -= 1
     return Dialect(delimiter, decimal, _columns(keyed, unit), first + 1, {})
 
@@ -110,6 +109,12 @@ def _is_data(row: Sequence[str], width: int) -> bool:
     filled = [cell for cell in row if cell.strip()]
     numbers = [cell for cell in filled if _number(cell) == _number(cell)]
     return width > 1 and len(row) == width and len(numbers) == len(filled) > 1
+
+
+def _is_damaged(row: Sequence[str]) -> bool:
+    """Return whether a line above the first whole row is a row, too: in heads keys alternate."""
+    numbers = [_number(cell) == _number(cell) for cell in row if cell.strip()]
+    return bool(row) and (_number(row[0]) == _number(row[0]) or sum(numbers) > len(numbers) / 2)
 
 
 def _number(text: str) -> float:

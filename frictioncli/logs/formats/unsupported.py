@@ -46,8 +46,6 @@ def _json_content(start: bytes) -> str:
         rows = "its list of records"
     elif records is not None:
         rows = f"its list {records[1].decode('utf-8', 'replace')!r}"
-    elif b"\n{" in start:
-        rows = "its records, one per line,"
     else:
         rows = "its rows"
     return (
