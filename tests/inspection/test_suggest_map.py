@@ -405,7 +405,7 @@ def test_a_speed_is_no_torque_and_counts_need_their_size(tmp_path):
     assert tomllib.loads(text)["scale"] == {"position": 0}
 
 
-@pytest.mark.parametrize("name", ["tau_cmd", "tau_ext", "TorqueRef"])
+@pytest.mark.parametrize("name", ["tau_cmd", "tau_ext", "TorqueDes"])
 def test_a_torque_that_was_not_measured_is_a_guess(name, tmp_path):
     path = named_log(
         tmp_path,

@@ -289,3 +289,28 @@ def test_rows_of_other_topics_are_counted_and_do_not_refuse_a_log(tmp_path):
     steady = np.abs(np.abs(velocity) - 40) < 1e-9
     inner = steady & np.roll(steady, 4) & np.roll(steady, -4)
     assert table["velocity"].to_numpy()[inner] == pytest.approx(velocity[inner], abs=0.01)
+
+
+def test_a_drive_that_logs_the_torque_it_asks_for(tmp_path):
+    """Monitor data of Yaskawa's drives: feedback speed, and the torque reference in % of rated."""
+    time, position, velocity, torque = back_and_forth()
+    columns = {"Time [s]": time, "Feedback Position [deg]": position}
+    columns |= {"Feedback Speed [min-1]": velocity / 6, "Torque Reference [%]": torque}
+    log = write(tmp_path / "trace.csv", columns)
+    summary = ingest([log], tmp_path / "work")
+    assert summary.torque_unit == "%"
+    assert any("what the drive asks of its motor" in note for note in summary.notes)
+    # where a torque was measured, it is read instead
+    log = write(tmp_path / "trace.csv", columns | {"torque [Nm]": torque})
+    assert ingest([log], tmp_path / "work").torque_unit == "N·m"
+
+
+def test_names_of_vesc_tool(tmp_path):
+    time, position, velocity, torque = back_and_forth()
+    columns = {"ms_today": 1e3 * time + 36e6, "current_motor": torque, "position": position}
+    columns |= {"temp_motor": 30 + time, "erpm": 7 * velocity / 6}
+    log = write(tmp_path / "vesc.csv", columns)
+    ingest([log], tmp_path / "work")
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    np.testing.assert_allclose(table["time"], time, atol=1e-6)
+    np.testing.assert_allclose(table["motor_temperature"], 30 + time, atol=1e-6)

@@ -55,7 +55,7 @@ from .logs import back_and_forth, kuka_columns, write
         ("FeedbackSpeed[min-1]", "velocity", None, "joint"),
         ("ExtTorque_A2", None, None, None),
         ("tau_ext_2", None, None, None),
-        ("TorqueReference[%]", None, None, None),
+        ("TorqueReference[%]", "torque", None, ""),  # where no torque was measured
         ("AxisPos_CmdIpo2[°]", None, None, None),
         ("Sollposition[°]", None, None, None),
         ("DriveMotorTorq_Cmd2[Nm]", None, None, None),

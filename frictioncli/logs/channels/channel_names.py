@@ -71,7 +71,10 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " timesec times zeits temps datetime recordtime controllertime sec"
         " tiempo tempo stamp secs",
     ),
-    (Meaning(TIME, rank=1, unit="ms"), "sample timems zeitms timestampms millis timemillis"),
+    (
+        Meaning(TIME, rank=1, unit="ms"),
+        "sample timems zeitms timestampms millis timemillis mstoday",
+    ),
     (
         Meaning(POSITION),
         "axisposact axispos axisact axisactmeas position positions pos jointposition jointpositions"
@@ -79,7 +82,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " robotactualjointpositions angle jointangle winkel achswinkel gelenkwinkel istwinkel"
         " axisangle axisposition achsposition jointpos qact observationstate observationqpos"
         " posestimate positionachse theta linkposition linkangle outputposition outputangle"
-        " posicion posicin posizione linkpos outputpos",
+        " posicion posicin posizione linkpos outputpos apos",
     ),
     (
         Meaning(POSITION, MOTOR_SIDE),
@@ -92,7 +95,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " geschwindigkeit achsgeschwindigkeit gelenkgeschwindigkeit axisvelocity jointvel"
         " axisspeed jointspeed actvelo actvel observationvelocity observationqvel velestimate"
         " vitesse omega geschwindigkeitachse thetadot linkvelocity outputvelocity"
-        " velocidad velocita velocit linkvel outputvel",
+        " velocidad velocita velocit linkvel outputvel fspd",
     ),
     (Meaning(VELOCITY, unit="rpm"), "rpm"),
     (
@@ -118,7 +121,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         "iststrom strom current currents motorcurrent motorstrom actualcurrent actualjointcurrent"
         " robotactualjointcurrent currentact actcurrent curr jointcurrent macur observationcurrent"
         " iqmeasured currentmotor iq iqa iqact iqactual qcurrent currentq qaxiscurrent motoriq cur"
-        " motorcurr motorcur courant corriente corrente",
+        " motorcurr motorcur courant corriente corrente currmotor",
     ),
     (Meaning(TORQUE, MOTOR_SIDE, 3, "%"), "curract"),
     (
@@ -144,3 +147,8 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
 )
 MEANINGS = {name: meaning for meaning, names in _ALIASES for name in names.split()}
 """Meaning by channel name in lower-case letters and digits, without joint number."""
+
+TORQUE_REFERENCES = frozenset(
+    ("torquereference", "referencetorque", "torqueref", "reftorque", "trqref")
+)
+"""Names of what a drive asks of its motor: all that some drives log of their torque."""

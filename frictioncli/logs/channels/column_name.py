@@ -201,3 +201,17 @@ def key_of(name: str) -> str:
     """Return a name as a key of :data:`MEANINGS`."""
     lower = name.lower().replace("ä", "ae").replace("ö", "oe").replace("ü", "ue")
     return _NO_KEY.sub("", lower.replace("ß", "ss"))
+
+
+def key_with_joint(name: str) -> tuple[str, int | None]:
+    """Return a name without its joint number as a key, and the number; None where it has none.
+
+    Examples
+    --------
+    >>> key_with_joint("Axis 2 Torque Reference"), key_with_joint("torque_ref")
+    (('torquereference', 2), ('torqueref', None))
+    """
+    for pattern in (_JOINT_FIRST, _JOINT_LAST):
+        if parts := pattern.match(name):
+            return key_of(parts["name"]), int(parts["joint"])
+    return key_of(name), None

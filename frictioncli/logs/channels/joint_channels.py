@@ -13,6 +13,7 @@ from frictioncli.logs.channels.channel_names import (
     POSITION,
     TIME,
     TORQUE,
+    TORQUE_REFERENCES,
     VELOCITY,
 )
 from frictioncli.logs.channels.recognition import LogChannel
@@ -177,6 +178,10 @@ def _joint_channels(
     velocities = _by_preference(of_joint, VELOCITY)
     same_side = [c for c in velocities if c.meaning.side == position.meaning.side]
     notes = [f"joint {joint} is {position.joint_name}"] if position.joint_name else []
+    if torques[0].family in TORQUE_REFERENCES:
+        notes.append(
+            f"{printable(torques[0].name)} is what the drive asks of its motor: taken as its torque"
+        )
     if len(torques) > 1:
         others = ", ".join(c.name for c in torques[1:])
         notes.append(f"torque of joint {joint} is {torques[0].name}; not used: {others}")

@@ -10,9 +10,16 @@ from frictioncli.logs.channels.channel_names import (
     POSITION,
     TIME,
     TORQUE,
+    TORQUE_REFERENCES,
     Meaning,
 )
-from frictioncli.logs.channels.column_name import WORD_ENDS, key_of, known_name, split_unit
+from frictioncli.logs.channels.column_name import (
+    WORD_ENDS,
+    key_of,
+    key_with_joint,
+    known_name,
+    split_unit,
+)
 from frictioncli.logs.channels.named_joints import named_joints
 from frictioncli.logs.channels.translated_names import in_english
 
@@ -117,6 +124,8 @@ def _recognised_channels(
     found = _with_symbol(found)
     if not any(channel.quantity == TORQUE for channel in found):
         found += _currents_in_ampere(columns) or _numbered_currents(columns, found)
+    if not any(channel.quantity == TORQUE for channel in found):
+        found += _torque_references(columns)
     if not any(channel.quantity == TIME for channel in found):
         found += _clocks(columns)
     if not any(channel.quantity == POSITION for channel in found):
@@ -176,6 +185,17 @@ def _numbered_currents(columns: Sequence[str], found: Sequence[LogChannel]) -> l
         return []
     meaning = MEANINGS["current"]
     return [LogChannel(index, columns[index], meaning, n, "", "i") for index, n in numbers.items()]
+
+
+def _torque_references(columns: Sequence[str]) -> list[LogChannel]:
+    """Return columns such as ``Torque Reference [%]`` of a log without measured torques."""
+    found = []
+    for index, column in enumerate(columns):
+        name, unit = split_unit(column)
+        key, joint = key_with_joint(name)
+        if key in TORQUE_REFERENCES:
+            found.append(LogChannel(index, column, Meaning(TORQUE, "", 4), joint, unit, key))
+    return found
 
 
 def _clocks(columns: Sequence[str]) -> list[LogChannel]:
