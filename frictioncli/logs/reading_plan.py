@@ -10,6 +10,7 @@ from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.joint_plan import JointPlan, plan_joint
 from frictioncli.logs.channels.simulated import command_columns, warn_of_simulation
 from frictioncli.logs.channels.survey import Survey, survey
+from frictioncli.logs.channels.surveyed_motion import with_moving_position
 from frictioncli.logs.channels.torque_choice import choose_torques
 from frictioncli.logs.channels.torque_constant import TorqueConstant
 from frictioncli.logs.log_source import Refusal
@@ -106,7 +107,8 @@ def _plans_of_layout(
     if isinstance(told, float | int):
         one = TorqueConstant(float(told), None, "as given")
         constants = {channels.joint: one for channels in first.joints}
-    chosen = warn_of_simulation(choose_torques(first.joints, surveyed), commands, surveyed)
+    moving = [with_moving_position(channels, surveyed) for channels in first.joints]
+    chosen = warn_of_simulation(choose_torques(moving, surveyed), commands, surveyed)
     found = [
         plan_joint(
             joint,

@@ -222,3 +222,13 @@ def test_a_torque_without_noise_is_that_of_a_model(tmp_path):
     assert "tau_Nm has no noise: simulated" in warning
     noise = np.random.default_rng(2).normal(0, 0.01, len(time))
     assert warnings_of(tmp_path, {"t": time, "q_deg": position, "tau_Nm": model + noise}) == ()
+
+
+def test_of_two_positions_the_one_that_changes_is_read(tmp_path):
+    time, position, gravity, friction = swings()
+    columns = {"t": time, "joint_6/pos": 0 * time, "joint_6/position [deg]": position}
+    columns["joint_6/torque/Nm"] = gravity + friction
+    assert warnings_of(tmp_path, columns) == ()
+    table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    assert set(table["joint"]) == {6}
+    np.testing.assert_allclose(table["position"], position, atol=1e-6)

@@ -19,6 +19,7 @@ import pyarrow.parquet as pq
 
 from tests.studies.fuzz_call import call, commands
 from tests.studies.fuzz_damage import _CELLS, _TEXTS, _damaged
+from tests.studies.fuzz_heads import heads
 from tests.studies.fuzz_input import LOGS, RICH, RICH_LOGS, WORK, Input
 from tests.studies.fuzz_recordings import COLUMNS, RECORDINGS, WRITERS, recording
 from tests.studies.fuzz_work import work_folders
@@ -295,6 +296,9 @@ def examine(form: str, number: int, folder: Path, base: Path) -> tuple[Input, st
     if status == 0 and one.rows is not None:
         wrong = lost_rows(folder / WORK, one.rows)
         return one, "wrong" if wrong else "read", wrong
+    if status == 0 and one.check is not None:
+        wrong = one.check(folder / WORK, said)
+        return one, "wrong" if wrong else "read", wrong
     return one, "refused" if status == 2 else "read", ""
 
 
@@ -324,4 +328,5 @@ FORMS: dict[str, Callable[[Path, Path, random.Random], Input]] = {
     "options": options,
     "recordings": binary,
     "rows": rows,
+    "heads": heads,
 }

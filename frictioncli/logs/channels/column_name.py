@@ -21,6 +21,7 @@ _UNIT_LAST = re.compile(
 _UNIT_OF_QUANTITY = re.compile(
     r"^(?P<name>.+?)(?:[_ ]in)?[_ /,](?P<unit>"
     r"(?:deg(?:rees?)?|grad|°|rad(?:ians?)?)(?:(?:[_ ]per[_ ]|[_/])?s(?:ec)?|ps)?|rpm"
+    r"|mrad|udeg|kgf[_.·*]?c?m|lbf[_.·*]?(?:ft|in)|ozf[_.·*]?in"
     r"|turns?|revs|rot|(?:turns?|revs?|rot)(?:[_ ]per[_ ]|[_/])s(?:ec)?"
     r"|[mk]?N[_ .·*]?m|N[_ .·*]?cm|mA|percent|pct|%|deg[_ ]?[CF]|°[CF]|[CFK]|celsius|kelvin"
     r"|s|sec|seconds?|[mun]s|kg|g)(?P<joint>[_ ][AJ]?\d{1,2})?$",
@@ -32,7 +33,7 @@ _JOINT_LAST = re.compile(
 )
 _JOINT_FIRST = re.compile(
     r"^(?:joint|axis|axle|achse|gelenk|motor|actuator|servo|drive|ax|[aj])[ _.]?(?P<joint>\d{1,2})"
-    r"[ _.\-]+(?P<name>.+)$",
+    r"[ _.\-/]+(?P<name>.+)$",
     re.I,
 )
 MEASURED = re.compile(

@@ -28,7 +28,7 @@ _JOINT_IN_FILE_NAME = re.compile(
     r"|(?:^|[_\s-])(?:A|J|(?:axis|joint|achse|motor)[_\s-]?)(\d{1,2})$",
     re.I,
 )
-_AMPERE = re.compile(r"^(?P<name>.+)_A(?:mps?)?$", re.I)
+_AMPERE = re.compile(r"^(?P<name>.+?)(?:[_ ]in)?[_ /,]A(?:mps?)?$", re.I)
 _NUMBERED_CURRENT = re.compile(r"^[iI][_ ]?(\d{1,2})$")
 _CLOCK = re.compile(r"(?:^|[_ .])(?:time|timestamp|stamp|zeit)$", re.I)
 _DURATION = re.compile(

@@ -1,11 +1,46 @@
 """The motion of axes in the first rows of logs, from which units are inferred."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from frictioncli.logs.channels import position_units
+from frictioncli.logs.channels.joint_channels import JointChannels
 from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.survey import Survey
 from frictioncli.logs.channels.unit_evidence import RawMotion
+
+
+def with_moving_position(channels: JointChannels, survey: Survey) -> JointChannels:
+    """Return a joint's channels with a position that changes, where the preferred one never does.
+
+    Parameters
+    ----------
+    channels : JointChannels
+        The joint's columns.
+    survey : Survey
+        Raw samples.
+    """
+    chosen = channels.position
+    if not survey.n_rows or _changes(survey, chosen):
+        return channels
+    others = (
+        one
+        for one in survey.channels
+        if (one.quantity, one.joint) == (chosen.quantity, chosen.joint)
+        and one.meaning.side == chosen.meaning.side
+        and _changes(survey, one)
+    )
+    moving = next(others, None)
+    if moving is None:
+        return channels
+    note = f"position of joint {channels.joint} is {moving.name}: {chosen.name} never changes"
+    return replace(channels, position=moving, notes=(*channels.notes, note))
+
+
+def _changes(survey: Survey, channel: LogChannel) -> bool:
+    values = survey.pooled(channel)
+    return len(values) > 0 and float(np.ptp(values)) > 0
 
 
 def position_range(
