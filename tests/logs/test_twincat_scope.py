@@ -80,7 +80,9 @@ def test_channels_of_another_period_are_left_out(tmp_path):
     assert any("no velocity channel" in note for note in summary.notes)
 
 
-@pytest.mark.parametrize("parts", [lambda row: [row[:9], row[9:]], lambda row: [f"# {row}"]])
+@pytest.mark.parametrize(
+    "parts", [lambda row: [row[:9], row[9:]], lambda row: [f"# {row}"], lambda row: [f'"{row}']]
+)
 def test_a_first_row_that_is_damaged_is_counted(parts, tmp_path):
     lines = export(timelines="all", delimiter="\t", decimal=",").split("\r\n")
     at = lines.index("", 6) + 1

@@ -57,7 +57,7 @@ def scope_dialect(lines: Sequence[str], hints: CsvHints) -> Dialect | None:
         return None
     decimal = hints.decimal or ("," if delimiter != "," and "," in lines[first] else ".")
     unit = "100ns" if _number(rows[first][0]) > _FILETIME else "ms"
-    while _is_damaged(rows[first - 1]):
+    while _is_damaged(lines[first - 1], delimiter):
         first -= 1
     return Dialect(delimiter, decimal, _columns(keyed, unit), first + 1, {})
 
@@ -111,10 +111,11 @@ def _is_data(row: Sequence[str], width: int) -> bool:
     return width > 1 and len(row) == width and len(numbers) == len(filled) > 1
 
 
-def _is_damaged(row: Sequence[str]) -> bool:
-    """Return whether a line above the first whole row is a row, too: in heads keys alternate."""
-    numbers = [_number(cell) == _number(cell) for cell in row if cell.strip()]
-    return bool(row) and (_number(row[0]) == _number(row[0]) or sum(numbers) > len(numbers) / 2)
+def _is_damaged(line: str, delimiter: str) -> bool:
+    """Return whether a line above the first whole row is a row, too: heads begin with a key."""
+    cells = [cell for cell in line.split(delimiter) if cell.strip()]
+    numbers = [cell for cell in cells if _number(cell) == _number(cell)]
+    return bool(cells) and (not line.lstrip()[0].isalpha() or 2 * len(numbers) > len(cells))
 
 
 def _number(text: str) -> float:
