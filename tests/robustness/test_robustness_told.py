@@ -223,6 +223,16 @@ def test_a_name_of_several_lines_is_refused_in_one(day, tmp_path, command):
     assert "\n" not in str(told.value)
 
 
+def test_a_folder_with_a_name_of_several_lines_is_refused_in_one(day, tmp_path, monkeypatch):
+    folder = day.rename(day.with_name("day\n1"))
+    (folder / "log.csv").write_text(HEADER + ROWS, encoding="utf-8")
+    monkeypatch.chdir(folder)
+    for named in (folder, Path()):
+        with pytest.raises(LogError, match=r"several lines") as told:
+            ingest([named], tmp_path / "work", IngestSettings())
+        assert "\n" not in str(told.value)
+
+
 @pytest.mark.parametrize("sign", [-1, 0, 10, 13, 128, 256, 256 + 59, 1 << 20])
 def test_the_fast_parser_takes_only_what_it_can_tell_apart(sign):
     parser = pytest.importorskip("frictioncli.logs.formats._plain_numbers")

@@ -110,6 +110,8 @@ def discover(logs: Logs, excluded: Path | None = None) -> tuple[LogRun, ...]:
             for name, path in logs.items()
         )
     names = _unique_names(list(folders))
+    for name in names.values():  # a folder named as . has a name, too
+        _check_lines(name)
     return tuple(
         LogRun(names[folder], folder, _in_order(files)) for folder, files in folders.items()
     )
@@ -131,8 +133,12 @@ def _check_name(path: Path) -> None:
         str(path).encode()
     except UnicodeEncodeError:
         raise LogError(f"{path}: its name is not UTF-8; rename it") from None
-    if "\n" in path.name or "\r" in path.name:
-        raise LogError(f"{printable(str(path), 500)}: its name has several lines; rename it")
+    _check_lines(str(path))
+
+
+def _check_lines(name: str) -> None:
+    if "\n" in name or "\r" in name:
+        raise LogError(f"{printable(name, 500)}: its name has several lines; rename it")
 
 
 def _in_order(files: Iterable[Path]) -> tuple[LogFile, ...]:
