@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from frictioncli.errors import OptionError
 from frictioncli.logs.channels import channel_names as names
-from frictioncli.logs.channels import units
+from frictioncli.logs.channels import surveyed_motion, units
 from frictioncli.logs.channels.channel_map import ChannelMap
 from frictioncli.logs.channels.joint_plan import JointPlan, plan_joint
 from frictioncli.logs.channels.simulated import command_columns, warn_of_simulation
@@ -18,6 +18,9 @@ from frictioncli.logs.runs.opening import OpenedLog, RefusedLog
 from frictioncli.logs.samples.chunks import PlannedLog, plan_log
 from frictioncli.logs.samples.clock_range import with_continuous_clock
 from frictioncli.logs.settings import IngestSettings
+
+_SHORTEST_PERIOD = 2.5e-5
+"""Robots and drives log no faster. [s]"""
 
 Constants = Mapping[int, TorqueConstant | Refusal]
 """Torque constant by joint, or why it is not known."""
@@ -143,12 +146,20 @@ def _plans_of_layout(
 def _doubts_of_time(
     plans: list[JointPlan], surveyed: Survey, forced: Mapping[str, str]
 ) -> tuple[str, ...]:
-    """Return a warning of times in s that may count milliseconds or rows."""
-    time = plans[0].channels.time
-    if time.unit or time.meaning.unit or names.TIME in forced or any(p.shows_time for p in plans):
+    """Return a warning of times that may be in another unit, or count rows."""
+    time, unit = plans[0].channels.time, plans[0].conversions[names.TIME].unit
+    if names.TIME in forced or any(plan.shows_time for plan in plans):
+        return ()
+    period = surveyed_motion.period(surveyed, time)
+    if period is not None and 0 < period * units.FACTORS[names.TIME][unit] < _SHORTEST_PERIOD:
+        return (
+            f"{time.name} is read as {unit}, in which its rows follow each other within"
+            f" {period:.2g} {unit}: if it is in s, say so with --time-unit s",
+        )
+    if time.unit or time.meaning.unit:
         return ()
     step = units.whole_step([head[time.column] for head in surveyed.heads])
-    if step is None or step < 1 or plans[0].conversions[names.TIME].unit != "s":
+    if step is None or step < 1 or unit != "s":
         return ()
     return (
         f"{time.name} has no unit and grows by {step:g} from row to row: read as s; if it is in ms,"

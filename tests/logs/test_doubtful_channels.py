@@ -232,3 +232,12 @@ def test_of_two_positions_the_one_that_changes_is_read(tmp_path):
     table = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
     assert set(table["joint"]) == {6}
     np.testing.assert_allclose(table["position"], position, atol=1e-6)
+
+
+def test_seconds_that_a_name_calls_milliseconds(tmp_path):
+    time, position, gravity, friction = swings()
+    columns = {"time_ms": time, "q_deg": position, "tau_Nm": gravity + friction}
+    (warning,) = warnings_of(tmp_path, columns)
+    assert "--time-unit s" in warning
+    assert warnings_of(tmp_path, columns, IngestSettings(time_unit="s")) == ()
+    assert warnings_of(tmp_path, columns | {"time_ms": 1e3 * time}) == ()

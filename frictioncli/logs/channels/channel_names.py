@@ -82,7 +82,8 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " robotactualjointpositions angle jointangle winkel achswinkel gelenkwinkel istwinkel"
         " axisangle axisposition achsposition jointpos qact observationstate observationqpos"
         " posestimate positionachse theta linkposition linkangle outputposition outputangle"
-        " posicion posicin posizione linkpos outputpos apos",
+        " posicion posicin posizione linkpos outputpos apos"
+        " stateposition statepos",
     ),
     (
         Meaning(POSITION, MOTOR_SIDE),
@@ -95,7 +96,8 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " geschwindigkeit achsgeschwindigkeit gelenkgeschwindigkeit axisvelocity jointvel"
         " axisspeed jointspeed actvelo actvel observationvelocity observationqvel velestimate"
         " vitesse omega geschwindigkeitachse thetadot linkvelocity outputvelocity"
-        " velocidad velocita velocit linkvel outputvel fspd",
+        " velocidad velocita velocit linkvel outputvel fspd"
+        " statevelocity statevel",
     ),
     (Meaning(VELOCITY, unit="rpm"), "rpm"),
     (
@@ -113,7 +115,8 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " torqueaxisact actualtorque torqueact mt statetauj tauj measuredtorque achsmoment"
         " gelenkmoment torqact axistorqact acttorque acttorq observationeffort observationtorque"
         " tauest trq eff couple drehmomentachse jointeffort jointefforts acttrq trqact"
-        " linktorque outputtorque coppia taumsr msrtorque currentastorque torquecur torquecurrent",
+        " linktorque outputtorque coppia taumsr msrtorque currentastorque torquecur torquecurrent"
+        " statetau statetorque stateeffort",
     ),
     (Meaning(TORQUE, JOINT_SIDE, 2), "geartorqact geartorque geartorq getriebemoment"),
     (

@@ -44,12 +44,14 @@ MEASURED = re.compile(
 WORD_ENDS = re.compile(r"(?<=[a-z])(?=[A-Z])")
 """Where a word of a name in camel case ends."""
 _OF_MESSAGE = re.compile(
-    r"^(?:field|msg|data|feedback|(?:robot_)?state|robot|arm|measured|actual|sensors?"
+    r"^(?:field|msg|data|feedback|robot|arm|measured|actual|sensors?"
     r"|(?:axis\d\.)?(?:encoder|controller))\.",
     re.I,
 )
 """What ``rostopic echo -p``, objects of JSON and others put before each value of a message."""
 _SYMBOL = re.compile(r"^T[ _]?(?P<joint>\d{1,2})$", re.I)
+_DESIRED = re.compile(r"(?<![a-z])(?:d?q|tau(?:_j)?|theta)_d(?![a-z])", re.I)
+"""Desired values, as Franka names them; ``qd`` is a velocity."""
 _PER = re.compile(r"[_ ]per[_ ]|_(?=s(?:ec)?$)", re.I)
 _NO_KEY = re.compile(r"[^a-z0-9]")
 _JOINT_IN_BRACKETS = re.compile(r"^[AaJj]?\d{1,2}$")
@@ -153,7 +155,7 @@ def known_name(name: str, unit: str) -> KnownName | None:
     >>> known_name("T3", "degC").meaning.quantity
     'motor_temperature'
     """
-    known = _first_known(_spellings(name))
+    known = None if _DESIRED.search(name) else _first_known(_spellings(name))
     if not unit or units.canonical(unit, MOTOR_TEMPERATURE) is None:
         return known
     if known is not None and known.meaning.quantity == TIME:
