@@ -24,7 +24,7 @@ _UNIT_OF_QUANTITY = re.compile(
     r"|mrad|udeg|kgf[_.·*]?c?m|lbf[_.·*]?(?:ft|in)|ozf[_.·*]?in"
     r"|turns?|revs|rot|(?:turns?|revs?|rot)(?:[_ ]per[_ ]|[_/])s(?:ec)?"
     r"|[mk]?N[_ .·*]?m|N[_ .·*]?cm|mA|percent|pct|%|deg[_ ]?[CF]|°[CF]|[CFK]|celsius|kelvin"
-    r"|s|sec|seconds?|[mun]s|kg|g)(?P<joint>[_ ][AJ]?\d{1,2})?$",
+    r"|s|sec|seconds?|[mun]s|100ns|kg|g)(?P<joint>[_ ][AJ]?\d{1,2})?$",
     re.I,
 )
 _JOINT_LAST = re.compile(

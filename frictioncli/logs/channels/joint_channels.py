@@ -178,6 +178,10 @@ def _joint_channels(
     velocities = _by_preference(of_joint, VELOCITY)
     same_side = [c for c in velocities if c.meaning.side == position.meaning.side]
     notes = [f"joint {joint} is {position.joint_name}"] if position.joint_name else []
+    alike = [c for c in positions if c.meaning.side == position.meaning.side and c != position]
+    if alike and not alike[0].is_merged:
+        others = ", ".join(printable(c.name) for c in alike)
+        notes.append(f"position of joint {joint} is {position.name}; not used: {others}")
     if torques[0].family in TORQUE_REFERENCES:
         notes.append(
             f"{printable(torques[0].name)} is what the drive asks of its motor: taken as its torque"
