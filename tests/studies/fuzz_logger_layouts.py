@@ -237,9 +237,9 @@ def _without_position() -> Layout:
 
 
 def _objects() -> Layout:
-    """Return a log with a JSON object in each line, with lists of two joints."""
+    """Return a log with a JSON object in each line, with lists of two joints; the first one is off."""
     rows = [
-        json.dumps({"t": t, "state": {"pos_deg": [0.5, q], "torque_Nm": [1.0, u]}})
+        json.dumps({"t": t, "state": {"pos_deg": [0.5, q], "torque_Nm": [0.0, u]}})
         for t, q, u in np.round(np.stack((TIME, POSITION, TORQUE), axis=1), 9).tolist()
     ]
     return Layout("JSON objects in lines", "log.jsonl", rows=tuple(row.encode() for row in rows))
