@@ -79,3 +79,9 @@ def test_objects_of_settings_are_no_log(tmp_path):
     (tmp_path / "settings.jsonl").write_text('{"a": 1}\n{"b": 2}\n')
     with pytest.raises(LogError, match="no time and no position and no torque channel"):
         ingest([tmp_path / "settings.jsonl"], tmp_path / "work")
+
+
+def test_an_object_of_a_million_numbers_is_no_sample(tmp_path):
+    (tmp_path / "log.jsonl").write_text('{"t": [' + "1," * 1_000_000 + "1]}\n" + '{"t": 1}\n' * 30)
+    with pytest.raises(LogError, match="objects of more than 10000 numbers"):
+        ingest([tmp_path / "log.jsonl"], tmp_path / "work")

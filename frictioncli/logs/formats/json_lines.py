@@ -8,6 +8,7 @@ import json
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -35,8 +36,9 @@ def read_json_lines(path: Path, head: bytes, hints: CsvHints) -> "JsonLines | Re
     rows = [row for line in lines if (row := _parsed(line)) is not None]
     if len(rows) < 2:
         return None
-    # objects of several kinds may alternate
-    places = dict.fromkeys(place for row in rows for place in _places(row))
+    places: dict[Place, None] = {}
+    for row in rows:  # objects of several kinds may alternate
+        places |= dict.fromkeys(islice(_places(row), _MOST_COLUMNS + 1))
     if len(places) > _MOST_COLUMNS:
         return Refusal(
             "format_not_read",
