@@ -237,7 +237,7 @@ def _without_position() -> Layout:
 
 
 def _objects() -> Layout:
-    """Return a log with an object of JSON in each line, with lists of two joints; the first is off."""
+    """Return a log of JSON objects in lines, with lists of two joints; the first one is off."""
     rows = [
         json.dumps({"t": t, "state": {"pos_deg": [0.5, q], "torque_Nm": [0.0, u]}})
         for t, q, u in np.round(np.stack((TIME, POSITION, TORQUE), axis=1), 9).tolist()
