@@ -144,11 +144,16 @@ class _Worker:
 def _work(connection: Connection, form: str, base: Path | None) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (_ADDRESSES, _ADDRESSES))
     while (number := connection.recv()) is not None:
-        connection.send(examine_here(number, form, base))
+        connection.send(examine_here(number, form, base, most=MEMORY))
 
 
-def examine_here(number: int, form: str = "logs", base: Path | None = None) -> Finding:
-    """Examine one input in this process; parameters as of :func:`examined`."""
+def examine_here(
+    number: int, form: str = "logs", base: Path | None = None, *, most: float = float("inf")
+) -> Finding:
+    """Examine one input in this process; parameters as of :func:`examined`.
+
+    A log may take the memory ``most`` in a process that does nothing else. [MB]
+    """
     if form != "logs":
         assert base is not None
         with tempfile.TemporaryDirectory(prefix="fuzz-", dir=_DISK) as folder:
@@ -158,11 +163,11 @@ def examine_here(number: int, form: str = "logs", base: Path | None = None) -> F
         return Finding(number, form, input_.damage, outcome, text)
     one = case(number, _LAYOUTS)
     with tempfile.TemporaryDirectory(prefix="fuzz-", dir=_DISK) as folder:
-        outcome, text = _outcome(one, Path(folder), inspected=number % _INSPECTED == 0)
+        outcome, text = _outcome(one, Path(folder), most, inspected=number % _INSPECTED == 0)
     return Finding(number, one.layout.name, one.damage, outcome, text)
 
 
-def _outcome(one: Case, folder: Path, *, inspected: bool) -> tuple[str, str]:
+def _outcome(one: Case, folder: Path, most: float, *, inspected: bool) -> tuple[str, str]:
     from frictioncli.documents import to_json
     from frictioncli.errors import FrictionError
     from frictioncli.inspection.document import document
@@ -198,7 +203,7 @@ def _outcome(one: Case, folder: Path, *, inspected: bool) -> tuple[str, str]:
     except Exception:
         return "traceback", traceback.format_exc()[-1500:]
     # before the tables are compared, which takes more memory than to read a log
-    if (peak := _peak()) > MEMORY:
+    if (peak := _peak()) > most:
         return "memory", f"{peak:.0f} MB"
     wrong = contradiction(one, work)
     shutil.rmtree(work)
