@@ -17,9 +17,9 @@ from frictioncli.diagnosis.search.cause_selection import (
     judged_together,
     uncertain_causes,
 )
+from frictioncli.diagnosis.search.decays import with_one_decay
 from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
 from frictioncli.diagnosis.search.measurement import measurement_causes
-from frictioncli.diagnosis.search.possible import is_seen_once
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.standing import with_standing
@@ -27,12 +27,9 @@ from frictioncli.diagnosis.search.stated_size import sizes_beside_each_other
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing
 from frictioncli.diagnosis.search.understood import understood
-from frictioncli.effects.run_in import EFFECT as RUN_IN
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 _UNCERTAIN = "its coefficient in the extended model may be zero"
-
-_ONE_DECAY = "friction decays once, and the other cause need not decay exactly by its equation"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,16 +126,8 @@ class Judging:
             # what the starts of moves tell of the delay counts, too
             uncertain -= {DELAY}
         certain = _unnamed(judged, uncertain, "undetermined", _UNCERTAIN)
-        return _unnamed(certain, self._parts_of_decay(certain.named), "undetermined", _ONE_DECAY)
-
-    def _parts_of_decay(self, named: Sequence[Cause]) -> set[str]:
-        """Return the smaller of two causes that both only decay, once: one of them may be all.
-
-        Running-in need not fall exactly exponentially; what its form does not match decays, too.
-        """
-        once = [one for one in named if is_seen_once(one.fit, self.problem)]
-        decaying = [*once, *(one for one in named if once and one.fit.effect is RUN_IN)]
-        return _names(sorted(decaying, key=lambda one: -one.visible)[1:])
+        once = with_one_decay(certain.named, self.problem)
+        return replace(certain, causes=_with(certain.causes, once))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

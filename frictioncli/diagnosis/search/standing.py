@@ -16,7 +16,7 @@ from frictioncli.diagnosis.search.confounded import (
     without_forms_of_ends,
     without_forms_of_others,
 )
-from frictioncli.diagnosis.search.doubtful_steps import doubtful_step
+from frictioncli.diagnosis.search.doubtful_steps import doubtful_step, without_forms_at_turns
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.possible import (
     ON_BOUND,
@@ -62,7 +62,8 @@ def with_standing(
         Significance level.
     """
     judged = [_judged(cause, problem, margin, alpha) for cause in causes]
-    return without_forms_of_others(without_forms_of_ends(judged, problem))
+    told = without_forms_of_others(without_forms_of_ends(judged, problem))
+    return without_forms_at_turns(told, problem)
 
 
 def without_cancelling(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:

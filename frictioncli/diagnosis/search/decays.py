@@ -1,0 +1,72 @@
+"""Causes that all let friction fall once, of which one may be the whole fall.
+
+No joint runs in exactly exponentially. In a single run what the form of one such cause misses falls
+as well, and looks like another: a drift, a step to less friction, or friction after the first rest.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.possible import is_seen_once
+from frictioncli.diagnosis.search.understood import MOST_LEFT
+from frictioncli.effects.drift import EFFECT as DRIFT
+from frictioncli.effects.history import stretches
+from frictioncli.effects.run_in import EFFECT as RUN_IN
+from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
+
+_ONE_DECAY = "friction decays once, and the other cause need not decay exactly by its equation"
+
+
+def with_one_decay(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
+    """Return causes of which only the largest keeps its name of those that are one decay.
+
+    A smaller one that is a good part of it may be the cause as well, and joins its set.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes that are named.
+    problem : Problem
+        The rows seen.
+    """
+    decaying = _decaying(causes, problem)
+    if len(decaying) < 2:
+        return tuple(causes)
+    largest, *smaller = sorted(decaying, key=lambda one: -one.visible)
+    rivals = [one for one in smaller if one.visible > MOST_LEFT * largest.visible]
+    judged = {one.fit.effect.name: _lost(one) for one in smaller}
+    judged[largest.fit.effect.name] = _in_set(largest, rivals)
+    return tuple(judged.get(one.fit.effect.name, one) for one in causes)
+
+
+def _decaying(causes: Sequence[Cause], problem: Problem) -> list[Cause]:
+    """Return the causes that are a decay of which the others may be a part."""
+    if len(problem.runs) > 1:
+        return []
+    decays = [one for one in causes if one.fit.effect is RUN_IN or is_seen_once(one.fit, problem)]
+    return [*decays, *(one for one in causes if decays and _falls(one))]
+
+
+def _falls(cause: Cause) -> bool:
+    """Return whether a drift or a step that lasts lets friction fall."""
+    fit = cause.fit
+    lasts = fit.effect is STEP_CHANGE and len(stretches(fit.shape)) == 1
+    return (fit.effect is DRIFT or lasts) and bool(fit.coefficients[0] < 0.0)
+
+
+def _lost(cause: Cause) -> Cause:
+    return replace(cause, standing="undetermined", reason=_ONE_DECAY)
+
+
+def _in_set(cause: Cause, rivals: Sequence[Cause]) -> Cause:
+    """Return a cause with rivals in its set, each as probable as it is large."""
+    whole = cause.visible + sum(one.visible for one in rivals)
+    probabilities: dict[str, float] = {}
+    for one in (cause, *rivals):
+        for name, share in one.probabilities.items():
+            part = share * one.visible / whole
+            probabilities[name] = probabilities.get(name, 0.0) + part
+    effects = tuple(dict.fromkeys(name for one in (cause, *rivals) for name in one.effects))
+    return replace(cause, effects=effects, probabilities=probabilities)
