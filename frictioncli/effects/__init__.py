@@ -32,6 +32,7 @@ from frictioncli.effects import (
     torque_constant,
     torque_delay,
     torque_filter,
+    torque_scale,
     velocity_exponent,
 )
 from frictioncli.effects.base import Effect
@@ -73,10 +74,15 @@ They stand beside the base model from the start, so that no other effect explain
 lag of the sensor has the opposite sign of a gear that follows the motor, and takes nothing of it; a
 gear that friction warms more than the motor looks much like it."""
 
+RIVALS: tuple[Effect, ...] = (torque_scale.EFFECT,)
+"""Effects that are not searched for: each looks like another one, and is told from it afterwards.
+
+A change of the scale of the torque is told from one of the payload by the friction."""
+
 BY_NAME: Mapping[str, Effect] = MappingProxyType(
-    {effect.name: effect for effect in (*EFFECTS, *MEASUREMENT_EFFECTS)}
+    {effect.name: effect for effect in (*EFFECTS, *MEASUREMENT_EFFECTS, *RIVALS)}
 )
-"""Both by name."""
+"""All by name."""
 
 NEEDS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {effect.name: effect.needs for effect in BY_NAME.values()}

@@ -7,7 +7,7 @@ from string import Formatter
 import numpy as np
 import pytest
 
-from frictioncli.effects import BY_NAME, EFFECTS, MEASUREMENT_EFFECTS, NEEDS
+from frictioncli.effects import BY_NAME, EFFECTS, MEASUREMENT_EFFECTS, NEEDS, RIVALS
 from frictioncli.effects.base import applicable, missing_columns
 from frictioncli.effects.parameter import Parameter
 from tests.effects.tables import COLUMNS, selected, small, two_days
@@ -41,6 +41,7 @@ LOAD_ONLY = {"direction_asymmetry", "dress_pack"}
 BOTH = {
     "torque_constant",
     "payload_change",
+    "torque_scale",
     "inertia",
     "reversal_transient",
     "rest_recovery",
@@ -58,6 +59,7 @@ ANGLE_DEPENDENT = {
     "load_velocity",
     "load_temperature",
     "torque_constant",
+    "torque_scale",
     "payload_change",
     "dress_pack",
     "position_ripple",
@@ -69,7 +71,7 @@ ANGLE_DEPENDENT = {
     "backlash",
 }
 
-ALL = (*EFFECTS, *MEASUREMENT_EFFECTS)
+ALL = tuple(BY_NAME.values())
 
 every_effect = pytest.mark.parametrize("effect", ALL, ids=lambda effect: effect.name)
 
@@ -141,7 +143,9 @@ def test_only_a_history_may_have_further_stretches():
 def test_catalogue_holds_the_names_of_the_contract_in_order():
     assert [effect.name for effect in EFFECTS] == CONTRACT
     assert [effect.name for effect in MEASUREMENT_EFFECTS] == MEASUREMENT
-    assert list(BY_NAME) == list(NEEDS) == CONTRACT + MEASUREMENT
+    rivals = [effect.name for effect in RIVALS]
+    assert list(BY_NAME) == list(NEEDS) == CONTRACT + MEASUREMENT + rivals
+    assert rivals == ["torque_scale"]
 
 
 @every_effect

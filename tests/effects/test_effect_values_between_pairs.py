@@ -261,3 +261,11 @@ def test_torque_constant_scales_both_channels_by_the_same_percentage():
     )
     assert 0.1 * basis.friction[0, 0] == pytest.approx(0.04 * 50.0)
     assert 0.1 * basis.load[0, 0] == pytest.approx(0.04 * -20.0)
+
+
+def test_torque_scale_is_the_same_share_of_both_channels_while_it_is_there():
+    """3 % of 50 and of -20 in the second half of four pairs."""
+    table = small(pair=np.arange(4), clock=np.arange(4) * 60.0, friction=50.0, load=-20.0)
+    basis = BY_NAME["torque_scale"].evaluate(table, {"moment": 0.5, "end": 1.0})
+    assert 3.0 * basis.friction[:, 0] == pytest.approx([0.0, 0.0, 1.5, 1.5])
+    assert 3.0 * basis.load[:, 0] == pytest.approx([0.0, 0.0, -0.6, -0.6])

@@ -26,6 +26,7 @@ from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.stated_size import sizes_beside_each_other
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing
+from frictioncli.diagnosis.search.torque_scale import with_torque_scale
 from frictioncli.diagnosis.search.understood import understood
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
@@ -185,15 +186,18 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
         judged = judging.without_uncertain(judging.judged(_beside_named(judging, judged)))
         judged = without_imitations(judged, first, judging.alpha)
     others = [one for one in judged.causes if one.standing != "named"]
-    if structure is None and _is_there(first, judged, judging.margin):
-        structure = unnamed_structure(judged.found.step, judging.margin, judging.alpha)
+    rows = [judging.problem] if judging.new is None else [judging.problem, judging.new]
+    scaled = with_torque_scale(judged.named, judged.found.step, rows)
+    is_left = structure is not None and scaled.step is not judged.found.step
+    if is_left or (structure is None and _is_there(first, judged, judging.margin)):
+        structure = unnamed_structure(scaled.step, judging.margin, judging.alpha)
     return NamedCauses(
-        causes=judged.named,
-        others=(*others, *lost_on_the_way),
+        causes=scaled.causes,
+        others=(*others, *lost_on_the_way, *scaled.replaced),
         structure=structure,
         measurement=judged.found.measurement,
         timing=judged.timing,
-        step=judged.found.step,
+        step=scaled.step,
     )
 
 

@@ -1,0 +1,80 @@
+"""A change of the scale of the logged torque is told from a payload by the friction."""
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.torque_scale import with_torque_scale
+from frictioncli.effects import BY_NAME
+from tests.diagnosis.dense_noise import problem
+from tests.diagnosis.test_standing import cause
+
+SECOND_DAY = {"moment": 0.5, "end": 1.0}
+
+
+def judged(friction, load, steps=()):
+    """Return what is said of a payload that is found where torques change on the second day.
+
+    ``friction`` is a share of it; ``load`` is a share of gravity and a torque at 90 deg [N·m].
+    """
+
+    def later(rows):
+        return rows["run"] == "day2"
+
+    share, across = load
+    data = problem(
+        3,
+        lambda rows: friction * rows["friction_torque"] * later(rows),
+        lambda rows: (
+            later(rows)
+            * (share * rows["load_torque"] + across * np.sin(np.radians(rows["position"])))
+        ),
+    )
+    step = Step.of(Precomputed.of(data), [])
+    causes = []
+    for name in ("payload_change", *steps):
+        fit = step.fitted(BY_NAME[name], SECOND_DAY)
+        errors = np.sqrt(np.diag(fit.covariance))
+        causes.append(cause(fit.effect, tuple(fit.coefficients), tuple(errors), shape=SECOND_DAY))
+    found = Step.of(step.precomputed, [one.fit for one in causes])
+    return with_torque_scale(causes, found, [data]), found
+
+
+def test_load_and_friction_that_change_alike_are_a_scale():
+    found, before = judged(0.06, (0.06, 0.0))
+    (scale,) = found.causes
+    assert scale.effects[0] == "torque_scale"
+    assert scale.fit.coefficients == pytest.approx([6.0], abs=0.5)
+    assert [one.effect.name for one in found.step.accepted] == ["torque_scale"]
+    # one coefficient explains both channels
+    assert found.step.fit.objective < before.fit.objective - 10
+
+
+def test_a_step_of_friction_at_that_moment_is_a_part_of_it():
+    found, _ = judged(0.06, (0.06, 0.0), ["step_change"])
+    (scale,) = found.causes
+    (step,) = found.replaced
+    assert (scale.effects[0], step.fit.effect.name) == ("torque_scale", "step_change")
+    assert step.standing == "undetermined"
+
+
+@pytest.mark.parametrize(
+    ("friction", "load", "expected"),
+    [
+        # friction stays, or changes as much as days differ by
+        (0.0, (0.06, 0.0), ("payload_change",)),
+        (0.01, (0.06, 0.0), ("payload_change",)),
+        # a mass elsewhere than that of the arm, whatever friction does
+        (0.06, (0.0, 6.0), ("payload_change",)),
+        # between both
+        (0.035, (0.06, 0.0), ("payload_change", "torque_scale")),
+    ],
+)
+def test_a_payload_leaves_friction_as_it_was(friction, load, expected):
+    found, before = judged(friction, load)
+    (payload,) = found.causes
+    assert payload.effects == expected
+    assert payload.fit.effect.name == "payload_change"
+    assert found.step is before
+    assert sum(payload.probabilities.values()) == pytest.approx(1.0)
