@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.data.build_problem import build_problems
+from frictioncli.diagnosis.data.load_levels import two_level_history
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
 from frictioncli.diagnosis.search.new_run import holds_on_new_run, new_run_test
@@ -121,6 +122,19 @@ class TestChange:
         _, found = asked(table, fit, loud)
         assert found.holds is None
         assert found.shape == fit.shape
+
+
+def test_a_payload_in_turns_is_told_whichever_recording_of_the_new_run_has_it_first(torques):
+    group = torques.groupby("run")["pair"].rank("dense").to_numpy() // 20 % 2
+    there = group == np.where(torques["run"] == "day1", 1, 0)
+    table = with_payload(torques, there, 10.0, 3.0)
+    problem, _ = build_problems(table, "motor", "day2")
+    seen = two_level_history(problem)
+    _, found = asked(table, fit_of("payload_change", 1.0, 1.0, **seen))
+    assert found.holds is True
+    assert found.amplitude == pytest.approx(1.0, abs=4 * found.error + 0.02)
+    wrong = (presence(problem.all_runs, found.shape) > 0) != there
+    assert wrong.mean() < 0.001
 
 
 def with_stribeck(table, days, size):

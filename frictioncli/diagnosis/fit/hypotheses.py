@@ -7,6 +7,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.gravity import NAMES
+from frictioncli.diagnosis.data.load_levels import two_level_history
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import ModelColumns, basis_columns, joined, main_channel
 from frictioncli.diagnosis.fit.mixed_model import Variances
@@ -119,6 +120,8 @@ def _of_constant(problem: Problem) -> tuple[float, float]:
 def informative_shapes(effect: Effect, problem: Problem) -> list[dict[str, float]]:
     """Return the shapes to try first; of histories those that differ in the problem's runs.
 
+    Those of a load have the history besides that the load of the pairs suggests.
+
     Parameters
     ----------
     effect : Effect
@@ -130,7 +133,8 @@ def informative_shapes(effect: Effect, problem: Problem) -> list[dict[str, float
     if effect.moments is None:
         return tried
     share = measured_share(problem.all_runs)[problem.rows]
-    return distinct(tried, share) or tried[:1]
+    levels = two_level_history(problem) if effect.channel == "load" else None
+    return distinct([*([levels] if levels else []), *tried], share) or tried[:1]
 
 
 @dataclass(frozen=True, slots=True)

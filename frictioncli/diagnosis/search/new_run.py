@@ -21,6 +21,7 @@ from itertools import combinations
 import numpy as np
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.load_levels import two_level_history
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
@@ -32,6 +33,7 @@ from frictioncli.effects.history import (
     history,
     present,
     run_spans,
+    stretches,
     with_run,
 )
 from frictioncli.effects.history_search import refined_history
@@ -153,7 +155,11 @@ def _test_of_change(residual: NewRunResidual, shape: Shape) -> NewRunTest:
     share = measured_share(table)[new.rows]
     span = next(one for one in run_spans(table) if present(share, history([one])).all())
     absent, whole = (with_run(shape, span, parts) for parts in ([], [span]))
-    tried = distinct((with_run(shape, span, [part]) for part in parts_of(share, span)), share)
+    parts = [[part] for part in parts_of(share, span)]
+    levels = two_level_history(new)
+    if levels is not None:
+        parts += [stretches(levels), _between(stretches(levels), span)]
+    tried = distinct((with_run(shape, span, one) for one in parts), share)
     # with drift only a history with all moments right explains more than a wrong one
     quiet = residual.without_drift()
     best = max((shape, whole, *tried), key=quiet.evidence)
@@ -172,6 +178,12 @@ def _test_of_change(residual: NewRunResidual, shape: Shape) -> NewRunTest:
     if missed.holds is False:
         return replace(missed, shape=absent)
     return replace(missed, holds=None, shape=shape)
+
+
+def _between(parts: Sequence[Stretch], span: Stretch) -> list[Stretch]:
+    """Return what of a span lies between some stretches within it."""
+    edges = [span[0], *(edge for part in parts for edge in part), span[1]]
+    return list(zip(edges[::2], edges[1::2], strict=True))
 
 
 def parts_of(share: Array, span: Stretch) -> list[Stretch]:
