@@ -37,9 +37,9 @@ _SEVERAL = 2
 _PAUSE = 120.0
 """Time from pair to pair in which the temperature of a joint may become another one. [s]"""
 
-_AT_TURN = 0.95
+_AT_TURN = 0.9
 """Share of the pairs in which a change is there as the joint cools down, and not as it warms up, or
-the other way round, from which it comes with the turn."""
+the other way round, from which it comes with the turn. The gear turns later than the motor."""
 
 _PART_OF_OTHER = 1 / 3
 """Size of such a change, relative to a cause that differs between warming up and cooling down, up
