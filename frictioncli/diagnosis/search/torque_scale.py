@@ -6,8 +6,8 @@ tells: relative to friction its change *f* has the density
 
 .. math:: p(f \mid m) = (1 - s)\, N(f; m, \sigma^2) + s\, U(f)
 
-about *m*, which is 0 beside a payload and *e* with a scale; with the share *s* friction was changed
-as well, by as much as may be.
+about *m*, which is *e* with a scale, and what its load adds with a payload; with the probability
+*s* something else changed friction at that moment as well, evenly over a range (*U*).
 """
 
 from collections.abc import Sequence
@@ -45,7 +45,6 @@ _RANGE = 0.4
 
 _SAME_HISTORY = 0.9
 """Least share of the rows in which two changes agree that have one history."""
-
 
 _EXPLAINED = "the change of the scale of the torque explains it"
 
