@@ -8,7 +8,7 @@ gradually, with the temperature or with time, has all values between.
 
 import numpy as np
 
-from frictioncli.arrays import Array, Flags
+from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects.history import Shape, Stretch, history
 from frictioncli.effects.pair_series import measured_share
@@ -48,7 +48,7 @@ def two_level_history(problem: Problem) -> Shape | None:
     return history(parts) if 1 < len(parts) <= _MOST_STRETCHES else None
 
 
-def _along_greatest(problem: Problem, pair: Array, count: int) -> Array:
+def _along_greatest(problem: Problem, pair: Indices, count: int) -> Array:
     """Return how much load each pair has in the direction in which they differ most [N·m]."""
     angle = np.radians(problem.table.angle)
     rows = np.bincount(pair, minlength=count)
