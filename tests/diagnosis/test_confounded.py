@@ -163,14 +163,17 @@ def test_a_small_change_as_the_joint_turns_to_cool_may_be_the_form_of_another_ca
     warm = 20.0 + 50.0 * np.minimum(time, 9000.0 - time) / 9000.0
     table = replace(joint.table, time=time, measured_temperature=warm)
     turned = replace(joint, table=table)
-    one = of(change, 0.6, shape=history(parts))
-    judged = with_standing((one, of(other, 2.0)), turned, MARGIN, ALPHA)
+    one, two = of(change, 0.6, shape=history(parts)), of(other, 2.0)
+    # the lag that is found may have fewer columns than the entry of the catalogue
+    if other == "thermal_lag":
+        two = replace(two, fit=replace(two.fit, effect=replace(two.fit.effect, source="")))
+    judged = with_standing((one, two), turned, MARGIN, ALPHA)
     found, reason = judged[0].standing, judged[0].reason
     # what comes at the same temperature in each run is doubtful for that reason already
     assert (found == "undetermined" and "turns from" in reason) == (expected == "undetermined")
     # a larger one is not what the form of the other misses
     larger = replace(one, visible=0.7)
-    judged = with_standing((larger, of(other, 2.0)), turned, MARGIN, ALPHA)
+    judged = with_standing((larger, two), turned, MARGIN, ALPHA)
     assert "turns from" not in judged[0].reason
 
 

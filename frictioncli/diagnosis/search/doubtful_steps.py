@@ -107,7 +107,7 @@ def without_forms_at_turns(causes: Sequence[Cause], problem: Problem) -> tuple[C
         in_friction = change.fit.effect.channel == "friction"
         for other in named:
             may_miss = other.fit.effect is REST_RECOVERY or (
-                other.fit.effect is THERMAL_LAG and in_friction
+                other.fit.effect.name == THERMAL_LAG.name and in_friction
             )
             small = change.visible < _PART_OF_OTHER * other.visible
             if may_miss and small and _comes_with_turn(change.fit, problem):
