@@ -131,6 +131,29 @@ def test_what_was_superfluous_comes_back_once(catalogue, monkeypatch):
     assert tried == ["c", "a", "b"] * 2
 
 
+def test_what_was_superfluous_may_replace_one_of_those_that_made_it_so(catalogue, monkeypatch):
+    """Once: made superfluous again it replaces none."""
+    effects = catalogue(*THREE)
+    given = []
+
+    def settled(search, accepted, dropped=()):
+        given.append(([one.effect.name for one in accepted], "c" in dropped))
+        if len(given) == 1:
+            strongest.extend(accepted)
+        rounds = {2: accepted[1:], 3: [*accepted[1:], *strongest], 4: accepted[-1:]}
+        return rounds.get(len(given), list(accepted))
+
+    strongest = []
+    monkeypatch.setattr(cause_search._Search, "retested", settled)
+    data = problem(18, friction=lambda rows: A(rows) + 0.5 * B(rows) + 2.0 * C(rows))
+    found = find_causes(data, effects, SETTINGS, MARGIN, discrepancy=0.0)
+    assert given[:3] == [(["c"], False), (["c", "a"], False), (["a", "b"], False)]
+    # it stood beside b, and then went with it
+    assert given[3] == (["b", "c", "a"], False)
+    assert all(is_dropped for _, is_dropped in given[4:])
+    assert "c" not in names(found)
+
+
 def test_an_effect_accepted_stays_and_is_fitted_beside_its_companions(catalogue):
     """Alone the first takes a part of what is the second's."""
     first = effect("first", [(1.0, A), (0.5, B)])

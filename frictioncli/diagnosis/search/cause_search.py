@@ -125,7 +125,12 @@ def find_causes(
             dropped[candidates[-1].effect.name] = reason
             impossible.add(candidates[-1].effect.name)
             continue
-        retested = search.retested(candidates, dropped)
+        # what others made superfluous may be better than one of them alone: it comes back once, too
+        retested = search.retested(candidates, set(dropped) - superfluous)
+        for name in _names(retested) & superfluous:
+            superfluous.remove(name)
+            again.add(name)
+            del dropped[name]
         # an effect that another one has made superfluous must not come back again and again
         for name in _names(candidates) - _names(retested):
             if name not in again:
