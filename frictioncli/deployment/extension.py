@@ -51,7 +51,7 @@ _REASONS = {
     "run_in": "depends on the hours since the first log",
     "rest_recovery": "depends on the rests between the log's series",
     "step_change": "was present during parts of the log only",
-    "torque_scale": "was present during parts of the log only",
+    "torque_scale": "scales friction and load, and was present during parts of the log only",
     "reversal_transient": "depends on the angle since the last reversal",
     "position_ripple": "depends on the angle",
     "inertia": "depends on acceleration, and is not friction",
