@@ -17,8 +17,10 @@ import pyarrow as pa
 
 from frictioncli.errors import NotEnoughData
 from frictioncli.regression.determination import JointRegression
+from frictioncli.regression.estimate import RegressionEstimate
 from frictioncli.regression.identification import LONGEST_DELAY, identify, some_equations
 from frictioncli.regression.motion_rows import MotionLog, motion_rows
+from frictioncli.regression.unknown_delay import allowing_for_delay
 
 _NEAR = 5e-4
 """Distance from the known delay within which the series hold as well as any log needs. [s]"""
@@ -83,10 +85,23 @@ def aligned_regressions(
             own = {joint: delays[joint] for joint in delays if motions[joint].step_time == width}
             for joint, motion in motion_rows(read(), step_time=width, delays=own).items():
                 found[joint] = attempt(joint, motion)
+    doubted: dict[int, tuple[RegressionEstimate, RegressionEstimate]] = {}
     for joint in aligned:
         one = found[joint]
-        if isinstance(one, NotEnoughData) or not _is_late(one[1]):
+        if isinstance(one, NotEnoughData) or _is_at_bound(one[1].estimate):
             found[joint] = attempt(joint, motions[joint], late=False)
+            continue
+        late, beside = one[1].estimate, _beside_rivals(one[1])
+        if not _is_late(late, beside):
+            found[joint] = attempt(joint, motions[joint], late=False)
+            doubted[joint] = late, beside
+    for joint, one in found.items():
+        if not isinstance(one, NotEnoughData):
+            motion, regression = one
+            found[joint] = (
+                motion,
+                allowing_for_delay(regression, *doubted.get(joint, (regression.late, None))),
+            )
     return found
 
 
@@ -96,12 +111,17 @@ def _is_far(motion: MotionLog, found: JointRegression) -> bool:
     return estimate.terms.delay and abs(estimate.delay - motion.known_delay) > _NEAR
 
 
-def _is_late(found: JointRegression) -> bool:
-    """Return whether the delay is told from none, within its bounds, and no friction's doing."""
-    estimate = found.estimate
-    if not estimate.told("delay") or abs(estimate.delay) >= _AT_BOUND * LONGEST_DELAY:
-        return False
-    terms = replace(estimate.terms, rivals=True)
-    beside = identify(some_equations(found.equations), terms)
-    (low, high), (least, most) = (one.interval("delay") for one in (estimate, beside))
-    return beside.told("delay") and low <= most and least <= high
+def _is_at_bound(late: RegressionEstimate) -> bool:
+    """Return whether the delay is one that no log has."""
+    return abs(late.delay) >= _AT_BOUND * LONGEST_DELAY
+
+
+def _beside_rivals(found: JointRegression) -> RegressionEstimate:
+    """Return a fit with the delay beside what friction may do as well."""
+    return identify(some_equations(found.equations), replace(found.estimate.terms, rivals=True))
+
+
+def _is_late(late: RegressionEstimate, beside: RegressionEstimate) -> bool:
+    """Return whether the delay is told from none, and no friction's doing."""
+    (low, high), (least, most) = (one.interval("delay") for one in (late, beside))
+    return late.told("delay") and beside.told("delay") and low <= most and least <= high

@@ -18,6 +18,7 @@ from frictioncli.regression.estimate import RegressionEstimate
 from frictioncli.regression.identification import DELTA_BOUNDS, identify, identify_delay
 from frictioncli.regression.preparation import PreparedJoint
 from frictioncli.regression.speed_law import NO_LAW
+from frictioncli.regression.zero_load_friction import friction_at
 
 LEAST_ROWS = 100
 """Least rows for a regression: 5 s of motion, at the usual width of the filter."""
@@ -35,9 +36,6 @@ _STRAIGHT = "the fall with temperature is too weakly curved to separate beta fro
 
 _LEAST_LOAD_SPREAD = 0.05
 """Spread of the squared load, as a share of its mean, below which its term is Coulomb friction."""
-
-_SAME_SPEED = 0.05
-"""Speeds that differ by a smaller share count as one."""
 
 _VAGUE = 0.5
 """Friction whose half interval exceeds this share of it is not determined."""
@@ -61,6 +59,9 @@ class JointRegression:
         Friction without load, with its 95 % interval, by speed in deg/s. [torque unit]
     temperature : float or None
         Temperature of that friction. [°C]
+    late : RegressionEstimate or None
+        A fit with a delay that is not told from zero; none where it is, or where there is no such
+        fit.
     """
 
     prepared: PreparedJoint
@@ -69,6 +70,7 @@ class JointRegression:
     undetermined: dict[str, str]
     friction: dict[float, tuple[float, float, float]]
     temperature: float | None
+    late: RegressionEstimate | None = None
 
     @property
     def equations(self) -> JointEquations:
@@ -134,13 +136,14 @@ def regress(prepared: PreparedJoint, joint: int, sign: int | None = None) -> Joi
 def _regressed(prepared: PreparedJoint, joint: int, sign: int | None) -> JointRegression:
     """Fit the terms that the motion excites, without a delay where it does not tell one."""
     terms, undetermined = _by_excitation(prepared)
-    estimate, prompt = identify_delay(prepared.equations, terms)
+    estimate, other = identify_delay(prepared.equations, terms)
+    late = None if estimate.terms.delay else other
     try:
-        return _determined(prepared, joint, sign, estimate, dict(undetermined))
+        return _determined(prepared, joint, sign, estimate, dict(undetermined), late)
     except NotEnoughData:
-        if prompt is None:
+        if other is None or late is other:
             raise
-    return _determined(prepared, joint, sign, prompt, undetermined)
+    return _determined(prepared, joint, sign, other, undetermined)
 
 
 def _determined(
@@ -149,6 +152,7 @@ def _determined(
     sign: int | None,
     estimate: RegressionEstimate,
     undetermined: dict[str, str],
+    late: RegressionEstimate | None = None,
 ) -> JointRegression:
     """Leave out of a fit what the data do not determine; refuse friction that they do not."""
     equations, terms = prepared.equations, prepared.terms
@@ -167,8 +171,9 @@ def _determined(
         estimate=estimate,
         sign=direction,
         undetermined=undetermined,
-        friction=_friction_at(equations, estimate, direction),
+        friction=friction_at(equations, estimate, direction),
         temperature=_temperature(equations, terms),
+        late=late,
     )
     _refuse(found, joint)
     return found
@@ -257,43 +262,6 @@ def _by_interval(
 def _temperature(equations: JointEquations, terms: EquationTerms) -> float | None:
     known = "gamma" in terms.friction or bool(np.any(equations.temperature))
     return float(np.median(equations.temperature)) if known else None
-
-
-def _friction_at(
-    equations: JointEquations, estimate: RegressionEstimate, sign: int
-) -> dict[float, tuple[float, float, float]]:
-    """Return friction without load at up to three speeds of the log, with its interval.
-
-    They are the median and, where they are told from it, the 10 % and the 90 % quantile.
-    """
-    found = {}
-    delta = estimate.parameters.get("delta", 0.0)
-    cold = float(np.exp(-delta * np.median(equations.temperature)))
-    temperature = float(np.median(equations.temperature))
-    low, middle, high = np.quantile(np.abs(equations.velocity), [0.1, 0.5, 0.9]).tolist()
-    slower = [low] if low < (1 - _SAME_SPEED) * middle else []
-    faster = [high] if high > (1 + _SAME_SPEED) * middle else []
-    for speed in (*slower, middle, *faster):
-        root = float(np.sqrt(speed))
-        gamma = estimate.parameters.get("gamma", 0.0)
-        slopes = {
-            "tau_c": 1.0,
-            "beta": root,
-            "gamma": root * cold,
-            "delta": -temperature * gamma * root * cold,
-        }
-        law = estimate.terms.speed_law
-        slopes |= dict(zip(law.names, law.columns(np.array([speed]))[0].tolist(), strict=True))
-        gradient = np.array([slopes.get(name, 0.0) for name in estimate.names])
-        value = sign * sum(
-            estimate.parameters[name] * slopes[name]
-            for name in ("tau_c", "beta", "gamma", *law.names)
-            if name in estimate.parameters
-        )
-        variance = float(gradient @ estimate.covariance @ gradient)
-        half = estimate.quantile() * float(np.sqrt(max(variance, 0.0)))
-        found[speed] = (value, value - half, value + half)
-    return found
 
 
 def _refuse(found: JointRegression, joint: int) -> None:

@@ -112,15 +112,16 @@ def identify_delay(
     -------
     estimate : RegressionEstimate
         The fit.
-    prompt : RegressionEstimate or None
-        The fit without the delay, where its interval does not tell the delay.
+    other : RegressionEstimate or None
+        Where its interval does not tell the delay, the fit without it, or with it if that is not
+        the first.
     """
     some, prompt = some_equations(equations), None
     estimate = identify(some, terms)
     if terms.delay and not equations.known_delay and not estimate.told("delay"):
         prompt = identify(equations, replace(terms, delay=False))
         if prompt.rmse < _MUCH_LEFT * estimate.rmse:
-            return prompt, None
+            return prompt, estimate
     return (estimate if some is equations else identify(equations, terms)), prompt
 
 

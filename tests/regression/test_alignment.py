@@ -103,6 +103,21 @@ def test_stribeck_friction_in_a_chirp_is_no_delay(delay):
     assert found["inertia"]["estimate"] == pytest.approx(programmes.INERTIA, rel=0.005)
 
 
+@pytest.mark.parametrize("seed", range(2))
+def test_the_interval_of_the_inertia_allows_for_a_delay_that_is_not_told(seed):
+    """With friction of 0.2 N·m·s/deg the torque of 8 ms before holds 1.6 mN·m·s²/deg less."""
+    time = np.arange(0, 80, FINE)
+    rate = 0.04 * 15 ** (time / 80)
+    position = 8 + 35 * np.minimum(1, 0.2 / rate) * np.sin(2 * np.pi * np.cumsum(rate) * FINE)
+    velocity = np.gradient(position, FINE)
+    motion = time, position, velocity, np.gradient(velocity, FINE)
+    found = parameters(late_log(motion, 0.008, added=0.2 * velocity, every=4, seed=seed))
+    assert "delay" not in found
+    low, high = found["inertia"]["ci95"]
+    assert low < programmes.INERTIA < high
+    assert found["inertia"]["estimate"] < 0.99 * programmes.INERTIA
+
+
 def test_friction_by_the_size_of_the_load_is_no_delay():
     """The slope of gravity goes along this motion as the law does: 37 ms but for the rivals."""
     time, rate = np.arange(0, 120, FINE), 2 * np.pi * 0.07 * np.arange(1, 6)
