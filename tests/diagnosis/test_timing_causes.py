@@ -89,6 +89,15 @@ def test_pairs_alone_name_a_filter_only_where_it_is_clear():
     assert names(found)[0] == ("torque_filter",)
 
 
+def test_pairs_that_do_not_tell_a_delay_from_a_filter_tell_by_how_much_the_torque_is_late():
+    (late, *_), rivals = judged_by_timing(causes(0.024, 4e-4, second_error=4e-4), None)
+    assert late.effects == ("torque_delay",)
+    assert rivals.estimates()[0].low == 0.0  # of a filter alone
+    assert rivals.shift.value == 0.024
+    assert 0.018 < rivals.shift.low < 0.022
+    assert 0.026 < rivals.shift.high < 0.030
+
+
 def test_without_the_measurement_s_effects_nothing_changes():
     (_, _, drift) = causes(0.0, 0.0)
     assert judged_by_timing([drift], starts(0.04, 0.0016)) == ((drift,), None)

@@ -203,17 +203,19 @@ def _record(
 ) -> CauseRecord:
     effect = cause.fit.effect
     said = statement(effect, parameters, words_for(diagnosis, effect, parameters))
-    if cause.effects == (DELAY,) and diagnosis.timing is not None:
-        delay, time_constant = map(_seconds, diagnosis.timing.estimates())
-        parameters = {"delay": delay}
-        said = statement(effect, parameters)
-        if diagnosis.timing.best == "both":
-            parameters["time_constant"] = time_constant
-            said = statement(effect, parameters, torque_delay.BESIDE_A_FILTER)
-    elif cause.effects == (FILTER,) and effect.name == DELAY and diagnosis.timing is not None:
+    timing = diagnosis.timing if effect.name == DELAY else None
+    if timing is not None and cause.effects == (FILTER,):
         effect = torque_filter.EFFECT
-        parameters = {"time_constant": _seconds(diagnosis.timing.estimates()[1])}
+        parameters = {"time_constant": _seconds(timing.estimates()[1])}
         said = statement(effect, parameters, torque_filter.BY_TIME_CONSTANT)
+    elif timing is not None and cause.effects == (DELAY,) and timing.best == "both":
+        delay, time_constant = map(_seconds, timing.estimates())
+        parameters = {"delay": delay, "time_constant": time_constant}
+        said = statement(effect, parameters, torque_delay.BESIDE_A_FILTER)
+    elif timing is not None:
+        # where a delay is not told from a filter, it stands for all that is late
+        parameters = {"delay": _seconds(timing.shift)}
+        said = statement(effect, parameters)
     return CauseRecord(
         kind=effect.kind,
         standing=cause.standing,

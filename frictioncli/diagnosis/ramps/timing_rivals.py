@@ -68,6 +68,13 @@ class TimingRivals:
         filtered = np.logaddexp(evidence["torque_filter"], evidence["both"])
         return float(filtered - evidence["torque_delay"])
 
+    @property
+    def shift(self) -> RampEstimate:
+        """Mean time by which the torque is late, whatever the reason [s]."""
+        reach = float(normal_quantile(_CONFIDENT)) * math.sqrt(self.covariance[0, 0])
+        value = float(self.point[0])
+        return RampEstimate(value, value - reach, value + reach)
+
     def combined(self, other: "TimingRivals") -> "TimingRivals":
         """Return the rivals by two estimates that are independent of each other."""
         weights = [np.linalg.inv(one.covariance) for one in (self, other)]
