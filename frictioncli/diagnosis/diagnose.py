@@ -199,20 +199,14 @@ def diagnose_joint(
     problem, new = result.judging.problem, result.judging.new
     named = named_causes(result.judging, result.judged)
     causes, step = named.causes, named.step
-    corrected = corrected_without_name(named.others, causes, problem)
-    names = {one.fit.effect.name for one in corrected}
-    rest = [one for one in named.others if one.fit.effect.name not in names]
-    given_up = given_up_causes(found, settings.alpha)
-    visible = visible_causes(
-        (*rest, *corrected, *given_up, *result.refuted, *found.refused), problem
-    )
+    noticed = corrected_without_name(named.others, causes, problem)
     extension = gain = None
     if lag is not None and not any(cause.fit.effect.name == LAG for cause in causes):
         # what is not named does not move the temperature of the extended model
         problem, new, lag = base, base_new, None
     weighted_fit = step.predicting_fit()
+    fits = [cause.fit for cause in (*causes, *noticed)]
     if causes:
-        fits = [cause.fit for cause in (*causes, *corrected)]
         weighted_fit = beside_the_rest(problem, weighted_fit, named.measurement, fits)
         extension = extend(problem, weighted_fit, fits)
         if lag is not None:
@@ -223,9 +217,9 @@ def diagnose_joint(
         causes = sizes_in_model(causes, extension, step, named.measurement, base)
     appeared: tuple[Cause, ...] = ()
     floor = _floor(found)
+    modelled = extension or extend(problem, weighted_fit, fits)
     if new:
-        before = extension or extend(problem, weighted_fit, [])
-        predicted = predicting(before, causes)
+        predicted = predicting(modelled, causes)
         appeared = changes_on_new_run(
             NewRunMisfit.of(problem, new, predicted, weighted_fit, step.noise()),
             [one for one in effects if one not in [cause.fit.effect for cause in causes]],
@@ -233,7 +227,7 @@ def diagnose_joint(
             margin=margin,
         )
         for cause in appeared:
-            extension = with_effect(before, cause.fit, len(causes))
+            modelled = extension = with_effect(modelled, cause.fit, len(causes))
         causes = (*causes, *appeared)
     if extension is not None:
         gain = measured_gain(
@@ -245,7 +239,6 @@ def diagnose_joint(
             floor=floor,
             seed=settings.seed,
         )
-    modelled = extension or extend(problem, weighted_fit, [])
     empirical = empirical_term(
         step,
         (problem, modelled),
@@ -262,6 +255,13 @@ def diagnose_joint(
             step, causes, unseen, margin=margin, floor=floor, seed=settings.seed
         )
         structure, empirical = begun or (None, None)
+    corrected = noticed if extension is not None or empirical is not None else ()
+    names = {one.fit.effect.name for one in corrected}
+    rest = [one for one in named.others if one.fit.effect.name not in names]
+    given_up = given_up_causes(found, settings.alpha)
+    visible = visible_causes(
+        (*rest, *corrected, *given_up, *result.refuted, *found.refused), problem
+    )
     return Diagnosis(
         joint=joint,
         torque_unit=torque_unit,

@@ -212,8 +212,8 @@ def corrected_without_name(
 ) -> tuple[Cause, ...]:
     """Return effects of the measurement that are corrected though they are not named.
 
-    They may be smaller than what is worth naming, and a prediction without them is worse. Without
-    causes there is no extended model that could correct them.
+    They may be smaller than what is worth naming, and a prediction without them is worse: on the
+    run that was kept out that looks like structure of its own.
 
     Parameters
     ----------
@@ -224,8 +224,6 @@ def corrected_without_name(
     problem : Problem
         The joint's rows.
     """
-    if not causes:
-        return ()
     named = {cause.fit.effect.name for cause in causes}
     return tuple(
         replace(one, reason=f"{one.reason}; corrected nonetheless")
