@@ -20,6 +20,7 @@ import numpy as np
 
 from frictioncli.regression.determination import JointRegression
 from frictioncli.regression.estimate import RegressionEstimate
+from frictioncli.regression.identification import identify, some_equations
 from frictioncli.regression.zero_load_friction import friction_at
 
 
@@ -42,13 +43,17 @@ def allowing_for_delay(
     estimate = found.estimate
     if late is None or estimate.terms.delay:
         return found
-    common = [name for name in estimate.names if name in late.names]
-    own, other = ([one.names.index(name) for name in common] for one in (estimate, late))
-    change = np.array([estimate.parameters[name] - late.parameters[name] for name in common])
+    terms = replace(estimate.terms, delay=True)
+    if late.terms != terms:
+        # what was left out since counts as part of another parameter
+        late = identify(some_equations(found.equations), terms)
+    own = [late.names.index(name) for name in estimate.names]
+    change = np.array(
+        [value - late.parameters[name] for name, value in estimate.parameters.items()]
+    )
     if beside is not None:
         size, own_size = (np.hypot(one.delay, one.deviation("delay")) for one in (beside, late))
         change *= size / own_size
-    covariance = estimate.covariance.copy()
-    covariance[np.ix_(own, own)] = late.covariance[np.ix_(other, other)] + np.outer(change, change)
+    covariance = late.covariance[np.ix_(own, own)] + np.outer(change, change)
     wider = replace(estimate, covariance=covariance, blocks=min(estimate.blocks, late.blocks))
     return replace(found, estimate=wider, friction=friction_at(found.equations, wider, found.sign))
