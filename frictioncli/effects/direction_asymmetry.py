@@ -7,7 +7,8 @@ in the load channel,
 .. math::
     \Delta L = c_0 + \left[c_1 + c_2 (\beta + \gamma e^{-\delta T}) \sqrt{50}\right] (v/50)^p .
 
-A constant asymmetry looks like an offset of the torque sensor.
+A constant asymmetry looks like an offset of the torque sensor, or like the constant of gravity that
+the base has: only their sum is known.
 """
 
 import numpy as np
@@ -88,8 +89,8 @@ EFFECT = Effect(
         claim="The load torque, which gravity alone should set, shifts with speed.",
     ),
     statement=(
-        "Half the difference of friction between the directions is {offset}, and"
-        " {speed_asymmetry} more at 50 deg/s."
+        "Half the difference of friction between the directions is {speed_asymmetry} more at 50"
+        " deg/s than at standstill, where it looks like a constant of gravity."
     ),
     confounders=("dress_pack", "reversal_transient", "torque_constant"),
     experiment=(
