@@ -17,6 +17,7 @@ from frictioncli.stages.pair import pair
 from frictioncli.stages.separate import separate
 from frictioncli.workfiles import TORQUES
 from tests.simulation.torque_table import simulate_torques, simulate_world
+from tests.studies.blind_truth import delay_and_filter
 
 SHORT = {"runs": 1, "seed": 3, "lowest": 25, "highest": 27, "joint_kind": "plain"}
 CHANNELS = ("friction_torque", "load_torque")
@@ -281,3 +282,20 @@ def test_nothing_asked_for_is_nothing():
 def test_wrong_nuisances_are_refused(texts, told):
     with pytest.raises(OptionError, match=told):
         requested_nuisances(texts, seed=0)
+
+
+def test_delay_and_filter_follow_from_the_moments_of_their_response():
+    """The density is that of an exponential response that begins after the delay."""
+    delay, time_constant = 0.012, 0.04
+    time = np.linspace(delay, delay + 30 * time_constant, 200_001)
+    density = np.exp(-(time - delay) / time_constant) / time_constant
+    mean, second = (float(np.trapezoid(density * time**n, time)) / n for n in (1, 2))
+    found = delay_and_filter(
+        {"torque_delay": {"delay": mean}, "torque_filter": {"second_moment": second}}
+    )
+    assert found == pytest.approx({"delay": delay, "time_constant": time_constant}, rel=1e-5)
+
+
+def test_without_a_filter_all_of_the_response_is_delay():
+    found = delay_and_filter({"torque_delay": {"delay": 0.02}})
+    assert found == {"delay": 0.02, "time_constant": 0.0}

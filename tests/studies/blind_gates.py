@@ -9,6 +9,7 @@ from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import PUBLISHED
 from tests.studies.blind_judged import said_as_such, unnamed_and_located
 from tests.studies.blind_rows import Joint, median_interval, of_kind, share
+from tests.studies.blind_truth import LATE, delay_and_filter
 from tests.studies.blind_worlds import MEASUREMENT
 
 LEAVES_BASE = (
@@ -159,10 +160,14 @@ def measurement_intervals(
         for cause in joint.causes:
             if cause["kind"] != "measurement":
                 continue
+            stated = cause.get("parameters", {})
             for name in set(cause["effects"]) & set(names):
                 truth = joint.nuisances.get(name, {})
+                if name in LATE and "time_constant" in stated:
+                    # delay and filter are then stated apart, not their moments
+                    truth = delay_and_filter(joint.nuisances)
                 for parameter, value in truth.items():
-                    known = cause.get("parameters", {}).get(parameter)
+                    known = stated.get(parameter)
                     if known is not None:
                         found.append(held_by(known, value))
     return [one for one in found if one is not None]

@@ -1,5 +1,6 @@
 """What is true of a joint of the blind study, and what of it can be seen at all."""
 
+import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -48,6 +49,9 @@ COUNTERPARTS: Mapping[str, tuple[str, Callable[[Any], float]]] = {
     "step_change": ("change", lambda one: one.parameters["way"] * one.magnitude),
 }
 """Coefficients of the catalogue that mean what a planted parameter means, and its value."""
+
+LATE = ("torque_delay", "torque_filter")
+"""Effects of the measurement that say by how much the torque is late."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -213,7 +217,7 @@ def _nuisances(nuisances: Nuisances) -> dict[str, dict[str, float]]:
 
     A filter delays by its time constant, and its moments are those of filter and delay together.
     """
-    delay, lag = nuisances.size("torque_delay"), nuisances.size("torque_filter")
+    delay, lag = (nuisances.size(name) for name in LATE)
     true = {
         "torque_delay": {"delay": delay + lag},
         "torque_filter": {"second_moment": lag**2 + lag * delay + delay**2 / 2} if lag else {},
@@ -223,6 +227,21 @@ def _nuisances(nuisances: Nuisances) -> dict[str, dict[str, float]]:
         "other_joint": {"torque": nuisances.size("other_joint")},
     }
     return {name: values for name, values in true.items() if any(values.values())}
+
+
+def delay_and_filter(nuisances: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
+    """Return the true delay and time constant of the filter [s] from the moments of both.
+
+    Parameters
+    ----------
+    nuisances : mapping of str to mapping
+        As in :class:`Truth`.
+    """
+    late, filtered = (nuisances.get(name, {}) for name in LATE)
+    mean = late.get("delay", 0.0)
+    second = filtered.get("second_moment", mean**2 / 2)
+    time_constant = math.sqrt(max(2 * second - mean**2, 0.0))
+    return {"delay": mean - time_constant, "time_constant": time_constant}
 
 
 def _without(world: World, torques: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
