@@ -1,5 +1,6 @@
 """Tables of the blind study that are about numbers: intervals, and sizes that would be found."""
 
+import itertools
 import textwrap
 from collections.abc import Sequence
 
@@ -18,6 +19,9 @@ from tests.studies.blind_gates import (
 from tests.studies.blind_page_tables import median, table
 from tests.studies.blind_rows import Joint, of_kind, share
 from tests.studies.blind_worlds import LISTED, MEASUREMENT
+
+_SIZES = (0.0, 1.0, 1.5, 2.0, 3.0, np.inf)
+"""What is left of an effect, in margins."""
 
 
 def interval_table(joints: Sequence[Joint]) -> str:
@@ -40,8 +44,31 @@ def interval_table(joints: Sequence[Joint]) -> str:
 
 
 def bounds_text(joints: Sequence[Joint]) -> str:
-    """Return what limits two of the gates: the margin, and what one day tells of the next."""
-    return "\n\n".join(filter(None, [_of_margin(joints), _of_days(joints)]))
+    """Return what limits the gates: size, margin, and what one day tells of the next."""
+    return "\n\n".join(filter(None, [_of_size(joints), _of_margin(joints), _of_days(joints)]))
+
+
+def _of_size(joints: Sequence[Joint]) -> str:
+    """Return how often an effect is named, by how much is left of it."""
+    lines = []
+    for low, high in itertools.pairwise(_SIZES):
+        cells = [f"{low:g} to {high:g} margins" if np.isfinite(high) else f"{low:g} or more"]
+        for kind in ("single", "pair"):
+            flags = [
+                any(one["name"] in names for names in joint.sets)
+                for joint in of_kind(joints, kind)
+                for one in joint.hidden
+                if low <= one["left"] / joint.margin < high
+            ]
+            cells.append(share(flags) if flags else "–")
+        lines.append(cells)
+    text = _filled(
+        "*Size.* A name needs the lower end of the 95 % interval of what is left above the margin,"
+        " not the estimate alone. Little more than the margin is therefore often not named, and"
+        " most of what the study plants leaves little more. By what is left of an effect, all"
+        " planted sizes together, the share of those in a set:"
+    )
+    return f"{text}\n\n{table(('left', 'one effect', 'each of a lag and another'), lines)}"
 
 
 def _of_margin(joints: Sequence[Joint]) -> str:
