@@ -5,7 +5,7 @@ Members of objects and lists become columns: ``{"t": 0.1, "state": {"q": [1, 2]}
 """
 
 import json
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import islice
@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from frictioncli.arrays import Numbers
-from frictioncli.logs.formats.encoding import decode_head, known_encoding, line_blocks
-from frictioncli.logs.log_source import MAX_ROW_TEXT, CsvHints, RawBatch, Refusal, SequentialSource
+from frictioncli.logs.formats.encoding import decode_head, known_encoding
+from frictioncli.logs.formats.text_rows import TextRows
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 _INSPECTED_LINES = 20
 _MOST_COLUMNS, _DEEPEST = 10_000, 8
@@ -44,25 +44,19 @@ def read_json_lines(path: Path, head: bytes, hints: CsvHints) -> "JsonLines | Re
             "format_not_read",
             f"JSON objects of more than {_MOST_COLUMNS} numbers; expected those of one sample",
         )
-    return JsonLines(path, encoding, tuple(places))
+    return JsonLines(path, encoding, 1, tuple(places))
 
 
 @dataclass(frozen=True, slots=True)
-class JsonLines(SequentialSource):
+class JsonLines(TextRows):
     """A log of JSON objects.
 
     Attributes
     ----------
-    path : Path
-        The file.
-    encoding : str
-        A Python encoding name.
     places : tuple of tuple
         Where each column stands in an object.
     """
 
-    path: Path
-    encoding: str
     places: tuple[Place, ...]
 
     @property
@@ -75,41 +69,10 @@ class JsonLines(SequentialSource):
         """The file's form in words."""
         return f"JSON objects in lines, {self.encoding.upper()}"
 
-    def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
-        """Yield the rows in order, in batches of about ``size`` bytes of the file."""
-        wanted = sorted(columns)
-        places = [self.places[column] for column in wanted]
-        for lines in self._lines(size):
-            rows: list[list[float]] = []
-            good: list[int] = []
-            bad: list[int] = []
-            for number, text in lines:
-                row = _values(text, places)
-                if row is None:
-                    bad.append(number)
-                else:
-                    rows.append(row)
-                    good.append(number)
-            values = np.array(rows, np.float64).reshape(len(rows), len(wanted))
-            yield RawBatch(
-                np.array(good, np.int64),
-                {column: values[:, at].copy() for at, column in enumerate(wanted)},
-                np.array(bad, np.int64),
-                ("not_a_number",) * len(bad),
-            )
-
-    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) for the given line numbers, which must be ascending."""
-        wanted = {int(line) for line in lines}
-        for part in self._lines(size):
-            yield from ((number, text[:MAX_ROW_TEXT]) for number, text in part if number in wanted)
-
-    def _lines(self, size: int) -> Iterator[list[tuple[int, str]]]:
-        """Yield the line numbers and texts of rows that are not blank."""
-        charset = "cp1252" if self.encoding == "cp1252" else "utf-8-sig"
-        for block in line_blocks(self.path, self.encoding, size):
-            texts = block.content.decode(charset, "replace").split("\n")
-            yield [(n, text) for n, text in enumerate(texts, block.first_line) if text.strip()]
+    def row(self, text: str, columns: Sequence[int]) -> list[float] | str:
+        """Return the numbers of some columns in a row, or the reason why it is rejected."""
+        values = _values(text, [self.places[column] for column in columns])
+        return "not_a_number" if values is None else values
 
 
 def _parsed(line: str) -> dict[str, Any] | None:

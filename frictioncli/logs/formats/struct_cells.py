@@ -4,19 +4,18 @@ Such a cell reads ``{E6AXIS: A1 45.2, A2 -12.3}`` or ``A1 45.2 A2 -12.3`` and be
 per axis. Delimiters and decimal signs may differ from row to row.
 """
 
+import math
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-import numpy as np
-
-from frictioncli.arrays import Numbers
 from frictioncli.logs.formats.dialect import NOT_NUMBERS
-from frictioncli.logs.formats.encoding import decode_head, known_encoding, line_blocks
-from frictioncli.logs.log_source import MAX_ROW_TEXT, CsvHints, RawBatch, Refusal, SequentialSource
+from frictioncli.logs.formats.encoding import decode_head, known_encoding
+from frictioncli.logs.formats.text_rows import TextRows
+from frictioncli.logs.log_source import CsvHints, Refusal
 
 _NUMBER = r"[+-]?\d++(?:[.,]\d++)?(?:[eE][+-]?\d++)?"
 _MEMBER = re.compile(rf"\b([A-Z]\d?)\s++({_NUMBER})")
@@ -57,26 +56,17 @@ def read_struct_cells(path: Path, head: bytes, hints: CsvHints) -> "StructCells 
 
 
 @dataclass(frozen=True, slots=True)
-class StructCells(SequentialSource):
+class StructCells(TextRows):
     """A log of KUKA variables.
 
     Attributes
     ----------
-    path : Path
-        The file.
-    encoding : str
-        A Python encoding name.
-    data_line : int
-        Line number of the first row, from 1.
     fields : tuple of str
         Names of the fields of a row.
     members : tuple of (tuple of str or None)
         For each field the names of its structure's members; None where it is a plain number.
     """
 
-    path: Path
-    encoding: str
-    data_line: int
     fields: tuple[str, ...]
     members: tuple[tuple[str, ...] | None, ...]
 
@@ -93,44 +83,8 @@ class StructCells(SequentialSource):
         """The file's form in words."""
         return f"text with structures in cells, {self.encoding.upper()}"
 
-    def batches(self, columns: Collection[int], size: int) -> Iterator[RawBatch]:
-        """Yield the rows in order, in batches of about ``size`` bytes of the file."""
-        wanted = sorted(columns)
-        for lines in self._lines(size):
-            rows: list[list[float]] = []
-            good: list[int] = []
-            bad: dict[int, str] = {}
-            for number, text in lines:
-                row = self._row(text, wanted)
-                if isinstance(row, str):
-                    bad[number] = row
-                else:
-                    rows.append(row)
-                    good.append(number)
-            values = np.array(rows, np.float64).reshape(len(rows), len(wanted))
-            yield RawBatch(
-                np.array(good, np.int64),
-                {column: values[:, place].copy() for place, column in enumerate(wanted)},
-                np.array(list(bad), np.int64),
-                tuple(bad.values()),
-            )
-
-    def texts(self, lines: Numbers, size: int) -> Iterator[tuple[int, str]]:
-        """Yield (line, text) for the given line numbers, which must be ascending."""
-        wanted = {int(line) for line in lines}
-        for part in self._lines(size):
-            yield from ((number, text[:MAX_ROW_TEXT]) for number, text in part if number in wanted)
-
-    def _lines(self, size: int) -> Iterator[list[tuple[int, str]]]:
-        """Yield the line numbers and texts of rows that are not blank."""
-        charset = "cp1252" if self.encoding == "cp1252" else "utf-8"
-        for block in line_blocks(self.path, self.encoding, size):
-            texts = block.content.decode(charset, "replace").split("\n")
-            numbered = enumerate(texts, block.first_line)
-            yield [(n, text) for n, text in numbered if n >= self.data_line and text.strip()]
-
-    def _row(self, text: str, wanted: list[int]) -> list[float] | str:
-        """Return the wanted numbers of a row, or the reason why it is damaged."""
+    def row(self, text: str, columns: Sequence[int]) -> list[float] | str:
+        """Return the numbers of some columns in a row, or the reason why it is rejected."""
         if _PLACEHOLDER in text:  # damaged: a NUL byte stands in place of other characters
             return "not_a_number"
         cells = _cells(text)
@@ -145,7 +99,7 @@ class StructCells(SequentialSource):
             else:
                 return "wrong_field_count"
         try:
-            return [_number(flat[column]) for column in wanted]
+            return [_number(flat[column]) for column in columns]
         except ValueError:
             return "not_a_number"
 
@@ -175,7 +129,7 @@ def _members(cells: list[str | list[tuple[str, str]]]) -> tuple[tuple[str, ...] 
 def _number(cell: str) -> float:
     """Return a number, or a date as seconds since 1970; NaN for an empty cell."""
     if not cell or cell in NOT_NUMBERS:
-        return np.nan
+        return math.nan
     number = cell.replace(",", ".")
     try:
         return float(number)
