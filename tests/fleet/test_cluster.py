@@ -192,7 +192,7 @@ def test_a_joint_that_takes_for_ever_is_a_row(tmp_path, nanny, timeout):
 def test_a_worker_that_does_not_answer_holds_nothing_up(tmp_path):
     tasks = list(tasks_of(tmp_path / "logs", tmp_path / "out", endless=()))
     with scheduler() as (address, _), worker(address, tmp_path / "one") as process:
-        outcomes = run_on_cluster(tasks, address, timeout=15.0)
+        outcomes = run_on_cluster(tasks, address, timeout=40.0)
         first = next(outcomes)
         os.kill(process.pid, signal.SIGSTOP)
         rest = list(outcomes)
