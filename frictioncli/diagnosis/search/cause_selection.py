@@ -143,7 +143,7 @@ def predicts_new_run(effect: Effect) -> bool:
     effect : Effect
         The effect.
     """
-    return not effect.measurement and effect.moments is None and effect is not THERMAL_LAG
+    return not effect.measurement and effect.moments is None and effect.name != THERMAL_LAG.name
 
 
 def missed_of_new_run(
