@@ -259,7 +259,7 @@ GATES = (
         of_median=True,
     ),
     Gate(
-        "the same, joints that are thermal networks",
+        "the same, joints that are thermal networks with constant coefficients",
         "<= 1.25",
         lambda joints: (one.over_floor for one in of_kind(joints, "network")),
         high=1.25,

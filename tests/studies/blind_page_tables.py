@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from itertools import product
 
 import numpy as np
 
@@ -213,11 +214,12 @@ def change_table(joints: Sequence[Joint]) -> str:
 def network_table(joints: Sequence[Joint]) -> str:
     """Return the table of joints that are thermal networks."""
     lines = []
-    for protocol in PROTOCOLS:
-        part = [one for one in of_kind(joints, "network") if one.world.protocol == protocol]
+    for kind, protocol in product(("network", "moved_heat"), PROTOCOLS):
+        part = [one for one in of_kind(joints, kind) if one.world.protocol == protocol]
         if part:
             lines.append(
                 [
+                    "constant" if kind == "network" else "moved",
                     protocol,
                     str(len(part)),
                     percent(_in_set(one, LAG) for one in part),
@@ -229,8 +231,8 @@ def network_table(joints: Sequence[Joint]) -> str:
                 ]
             )
     titles = (
-        *("programme", "joints", "lag in a set", "wrong name", "day kept out, base [N·m]"),
-        *("extended [N·m]", "over floor", "answers"),
+        *("entry of heat", "programme", "joints", "lag in a set", "wrong name"),
+        *("day kept out, base [N·m]", "extended [N·m]", "over floor", "answers"),
     )
     return table(titles, lines)
 

@@ -84,7 +84,7 @@ class Joint:
     @cached_property
     def true_names(self) -> set[str]:
         """Effects of the catalogue that are truly there, hidden or not."""
-        network = {LAG} if self.world.kind in ("network", "zones") else set()
+        network = {LAG} if self.world.kind in ("network", "moved_heat", "zones") else set()
         return {*self.names, *self.nuisances} | network
 
     @property

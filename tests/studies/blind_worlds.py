@@ -62,7 +62,16 @@ TWELVE = "12 pairs"
 ZONES = ("stribeck", "coulomb_temperature", "load_linear", "dress_pack", "inertia", "drift")
 """Effects hidden in the sample joint, whose friction has three zones."""
 
-KINDS = ("clean", "single", "pair", "unlisted", "change", "network", "ordinary", "zones")
+CONSTANT_HEAT = (0.5,)
+"""Share of the heat that enters at the motor in a network with constant coefficients. [-]"""
+
+MOVED_HEAT = SynthesisSettings().motor_heat_share
+"""The same on each day of all other joints. [-]"""
+
+KINDS = (
+    *("clean", "single", "pair", "unlisted", "change", "network", "ordinary", "zones"),
+    "moved_heat",
+)
 KEY = ("kind", "hidden", "size", "history", "protocol", "noise", "path", "seed")
 
 _ENRICHED = 4
@@ -70,6 +79,9 @@ _ENRICHED = 4
 
 _LOGS = 10
 """Every so many-th joint goes through the whole chain, logs included."""
+
+_JOINTS = {"network": "network", "moved_heat": "network", "zones": "zones"}
+"""Simulated joints of the kinds whose friction is not at the motor's temperature."""
 
 _SHUFFLE = 20190
 
@@ -139,7 +151,8 @@ class World:
         digest = hashlib.sha256(" ".join(own).encode()).digest()
         return SynthesisSettings(
             seed=int.from_bytes(digest[:4], "big"),
-            joint_kind={"network": "network", "zones": "zones"}.get(self.kind, "plain"),
+            joint_kind=_JOINTS.get(self.kind, "plain"),
+            motor_heat_share=CONSTANT_HEAT if self.kind == "network" else MOVED_HEAT,
             noise_kind=self.noise,
             noise_scale=noise_scale,
             protocol=self.protocol,
@@ -216,8 +229,12 @@ def _change(seed: int) -> list[World]:
 
 
 def _network(seed: int) -> list[World]:
+    return [World("network", "", seed, 0.0)]
+
+
+def _moved_heat(seed: int) -> list[World]:
     return [
-        World("network", "", seed, 0.0, protocol=protocol) for protocol in ("paper", "enriched")
+        World("moved_heat", "", seed, 0.0, protocol=protocol) for protocol in ("paper", "enriched")
     ]
 
 
@@ -237,6 +254,7 @@ _MAKERS: Mapping[str, Callable[[int], list[World]]] = {
     "unlisted": _unlisted,
     "change": _change,
     "network": _network,
+    "moved_heat": _moved_heat,
     "ordinary": _ordinary,
     "zones": _zones,
 }
