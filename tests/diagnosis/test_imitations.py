@@ -1,5 +1,6 @@
 """Effects of the measurement that stand for a cause without a name; causes refuted in turn."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,6 +11,7 @@ from frictioncli.diagnosis.search import cause_selection
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import refuted_by_new_run
 from frictioncli.diagnosis.search.named_causes import JudgedCauses, without_imitations
+from frictioncli.diagnosis.thermal.refine import restricted
 from frictioncli.effects import BY_NAME
 
 
@@ -72,3 +74,13 @@ def test_the_new_run_refutes_the_worst_first_and_the_others_without_it(monkeypat
     assert refuted.fit.effect.name == "drift"
     assert refuted.standing == "visible"
     assert "3 times" in refuted.reason
+
+
+def test_the_new_run_does_not_refute_a_lag_of_which_a_network_has_some_parts(monkeypatch):
+    """What a lag adds there depends on its temperature, in which the base is linear already."""
+    lag = cause("thermal_lag", "named")
+    lag = replace(lag, fit=replace(lag.fit, effect=restricted([0])))
+    monkeypatch.setattr(cause_selection, "missed_of_new_run", lambda fits, *rest: 1.0 + len(fits))
+    step = SimpleNamespace(problem=None, predicting_fit=lambda: None)
+    (refuted,) = refuted_by_new_run([lag, cause("drift", "named")], step, None)
+    assert refuted.effects == ("drift",)
