@@ -37,15 +37,19 @@ def basis(table: EffectTable, *, order: float) -> Basis:
     long_enough = order * float(np.ptp(angles)) / 360.0 >= LEAST_PERIODS
     enough = long_enough and len(angles) >= _LEAST_ANGLES
     resolved = 1.0 if enough and order <= 180.0 / finest else 0.0
-    columns = []
-    for harmonic in (order, 2 * order):
-        phase = harmonic * np.radians(table.angle)
-        left = resolved
-        if harmonic > 180.0 / finest:
-            # the centres of the bins do not show its order, but its phase is tied to the first
-            left *= float(np.sinc(harmonic * finest / 360.0))
-        columns += [left * np.sin(phase), left * np.cos(phase)]
-    return friction_only(*columns)
+    second = resolved
+    if 2 * order > 180.0 / finest:
+        # the centres of the bins do not show its order, but its phase is tied to the first
+        second *= float(np.sinc(order * finest / 180.0))
+    phase = order * np.radians(table.angle)
+    sine, cosine = np.sin(phase), np.cos(phase)
+    # sine and cosine of twice the phase
+    return friction_only(
+        resolved * sine,
+        resolved * cosine,
+        2 * second * sine * cosine,
+        second * (1 - 2 * np.square(sine)),
+    )
 
 
 EFFECT = Effect(
