@@ -14,7 +14,7 @@ operations that a factor of the whole takes.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg import lapack
@@ -45,6 +45,7 @@ class BlockCholesky:
     roots: list[Array]
     across: list[Array]
     root: Array
+    _of_others: list[Array] = field(default_factory=list, init=False, repr=False)
 
     @classmethod
     def of(
@@ -121,7 +122,7 @@ class BlockCholesky:
             shown = np.concatenate([self.sets[0][number], others])
             found[shown[:, np.newaxis], shown] = self.inverse_beside(number)
         one, two = (self._taken(number) for number in (0, 1))
-        across = one @ _inverse(self.root) @ two.T
+        across = one @ self._inverse_of_others() @ two.T
         found[first[:, np.newaxis], second] = across
         found[second[:, np.newaxis], first] = across.T
         return found
@@ -134,7 +135,7 @@ class BlockCholesky:
         number : int
             0 or 1, number of the set.
         """
-        taken, middle = self._taken(number), _inverse(self.root)
+        taken, middle = self._taken(number), self._inverse_of_others()
         width = len(taken)
         found = np.empty((width + len(middle),) * 2)
         weighted = taken @ middle
@@ -143,6 +144,12 @@ class BlockCholesky:
         found[width:, :width] = -weighted.T
         found[:width, :width] = _inverse(self.roots[number]) + weighted @ taken.T
         return found
+
+    def _inverse_of_others(self) -> Array:
+        """Return the inverse at the other columns, which both sets have beside them."""
+        if not self._of_others:
+            self._of_others.append(_inverse(self.root))
+        return self._of_others[0]
 
     def _taken(self, number: int) -> Array:
         """Return what a set takes of the other columns, shape (own, others)."""

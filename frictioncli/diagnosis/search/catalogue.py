@@ -110,9 +110,9 @@ class Catalogue:
                 continue
             modes, weight = self._modes(channel, place, variances)
             time = self.precomputed.noises.indices[variances.noise[channel]][0]
-            across[known.places.shown(channel)] += self._across_within(channel, known)[
-                :, place
-            ] / variances.within[channel] + known.modes(channel, time).T @ (
+            across[known.places.shown(channel)] += self._across_within(
+                channel, known, place
+            ) / variances.within[channel] + known.modes(channel, time).T @ (
                 modes * weight[:, np.newaxis]
             )
         return across
@@ -188,7 +188,7 @@ class Catalogue:
             self._shown[channel, number] = bool(shown)
         return self._shown[channel, number]
 
-    def _across_within(self, channel: int, known: TransformedColumns) -> Array:
+    def _across_within(self, channel: int, known: TransformedColumns, place: slice) -> Array:
         """Return inner products of deviations with those of known columns that show."""
         found = []
         for part in known.shown(channel):
@@ -197,7 +197,7 @@ class Catalogue:
                 own = self.part.columns.channels[channel].within
                 product = part.columns.channels[channel].within.T @ own
                 self._within[key] = (part, product)  # the part lives as long as its number
-            found.append(self._within[key][1])
+            found.append(self._within[key][1][:, place])
         return np.vstack(found)
 
     def _own_within(self, channel: int, number: int) -> Array:
