@@ -8,6 +8,7 @@ import pytest
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import misfit_column
 from frictioncli.diagnosis.fit.hypotheses import hypothesis_of
+from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 from frictioncli.diagnosis.search import detectable_size as detectable
 from frictioncli.diagnosis.search import planted_torque as module
@@ -87,10 +88,12 @@ def test_a_torque_is_planted_into_inner_products_as_into_the_data():
     there = misfit_column(planted(data, torque, 2.5))
     *parts, _ = step.columns.parts
     columns = TransformedColumns((*parts, Part(there, step.precomputed.noises)))
-    expected = columns.products()
+    expected = Products.of(columns)
     for channel in (0, 1):
-        for name in ("within", "between"):
-            one, two = (getattr(this, name)[channel] for this in (found.products, expected))
+        one, two = found.products.within[channel], expected.within[channel]
+        np.testing.assert_allclose(one, two, atol=1e-9 * float(np.abs(two).max()))
+        for noise in range(len(columns.noises.indices)):
+            one, two = (this.between(channel, noise) for this in (found.products, expected))
             np.testing.assert_allclose(one, two, atol=1e-9 * float(np.abs(two).max()))
 
 

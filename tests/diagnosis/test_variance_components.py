@@ -16,6 +16,7 @@ from scipy.optimize import minimize
 from frictioncli.diagnosis.fit.block_cholesky import BlockCholesky
 from frictioncli.diagnosis.fit.columns import ChannelColumns, ModelColumns
 from frictioncli.diagnosis.fit.mixed_model import Components, Variances, evaluate
+from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.transformed_columns import NoiseModels, Part, TransformedColumns
 from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
@@ -72,7 +73,7 @@ class World:
         known = self._part(self.columns)
         data = self._part([(one[0][:, None], one[1][:, None]) for one in self.misfit])
         self.transformed = TransformedColumns((known, data))
-        self.products = self.transformed.products()
+        self.products = Products.of(self.transformed)
 
     def _part(self, channels):
         return Part(ModelColumns(*(ChannelColumns(*one) for one in channels)), self.noises)
@@ -233,7 +234,7 @@ def test_a_column_that_no_data_see_changes_nothing():
     for part in world.columns[0] + world.columns[1]:
         part[:, 1] = 0.0
     known = world._part(world.columns)
-    products = TransformedColumns((known, world.transformed.parts[1])).products()
+    products = Products.of(TransformedColumns((known, world.transformed.parts[1])))
     at = variances(world, np.random.default_rng(3))
     fit = evaluate(world.components, products, BASE + sum(WIDTHS), at)
     assert np.isfinite(fit.objective)
@@ -257,7 +258,7 @@ def test_functions_that_show_in_one_channel_are_fitted_as_columns_that_are_zero_
         known.take(further),
         data,
     )
-    whole, blocks = (TransformedColumns(one).products() for one in ((known, data), parts))
+    whole, blocks = (Products.of(TransformedColumns(one)) for one in ((known, data), parts))
     assert blocks.within[0].shape[0] == whole.within[0].shape[0] - WIDTHS[1]
     at, count = variances(world, np.random.default_rng(5)), BASE + sum(WIDTHS)
     dense, found = (evaluate(world.components, one, count, at) for one in (whole, blocks))
@@ -345,7 +346,7 @@ def test_a_random_function_that_explains_nothing_changes_nothing():
         for _ in range(2)
     ]
     parts = world.transformed.parts
-    products = TransformedColumns((parts[0], world._part(own), parts[1])).products()
+    products = Products.of(TransformedColumns((parts[0], world._part(own), parts[1])))
     known = BASE + sum(WIDTHS)
     start = variances(world, np.random.default_rng(2))
     without = fit_variances(world.components, world.products, known, start)

@@ -236,7 +236,7 @@ class FormSearch:
             Part(basis_columns(precomputed.problem, one.columns(table, at)), precomputed.noises)
             for one, at in (*self.forms, (form, shape))
         ]
-        products = self.step.columns.beside(self.step.products, parts)
+        products = self.step.products.beside(parts)
         starts = self.fit.variances, precomputed.start
         fit = fit_variances(self.components, products, self.step.known, *starts)
         statistic = self.fit.objective - fit.objective

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.fit.transformed_columns import Part
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,6 +48,27 @@ class BaseProducts:
             rank=int(kept.sum(axis=1).max(initial=0)),
             determinant=logarithms + 2 * np.sum(np.log(finite), axis=1),
         )
+
+    @classmethod
+    def of_part(cls, part: Part, base: int, channel: int) -> "BaseProducts":
+        """Return the decomposition for the first columns of a part in one channel.
+
+        Parameters
+        ----------
+        part : Part
+            The part.
+        base : int
+            Number of the columns of the base.
+        channel : int
+            0 for friction, 1 for load.
+        """
+        noises = part.noises
+        own = np.empty((len(noises.indices), base, base))
+        for number in range(len(own)):
+            time, precision = noises.time_and_precision(channel, number)
+            scaled = part.modes(channel, time)[:, :base] * np.sqrt(precision)[:, np.newaxis]
+            own[number] = scaled.T @ scaled
+        return cls.of(own)
 
     def explained(self, right: Array) -> Array:
         """Return what the base explains of a column, from its inner products with it.

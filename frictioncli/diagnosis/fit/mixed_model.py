@@ -29,7 +29,8 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.base_products import BaseProducts
 from frictioncli.diagnosis.fit.block_cholesky import BlockCholesky
-from frictioncli.diagnosis.fit.products import AnyProducts, ChosenProducts, Places
+from frictioncli.diagnosis.fit.products import ChosenProducts, Products
+from frictioncli.diagnosis.fit.transformed_columns import Places
 
 _RIDGE = 1e-10
 """Added to the diagonal of columns of unit length: what no data determine stays finite."""
@@ -185,7 +186,7 @@ def weights_of(components: Components, variances: Variances, count: int) -> Arra
 
 
 def evaluate(
-    components: Components, products: AnyProducts, known: int, variances: Variances
+    components: Components, products: Products, known: int, variances: Variances
 ) -> MixedFit:
     """Return the fit of a model under given variance components.
 

@@ -1,6 +1,6 @@
 """Inner products of the columns of a model with a torque that is planted into its misfit."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -82,39 +82,43 @@ def weighted_products(
     return across, own
 
 
-def with_torque(
-    columns: TransformedColumns, products: Products, torque: Part
-) -> tuple[TransformedColumns, Products]:
-    """Return columns and their inner products with a torque added to the last, the misfit.
+def with_torque(products: Products, torque: Part) -> Products:
+    """Return inner products of columns with a torque added to the last of these, the misfit.
 
     Parameters
     ----------
-    columns : TransformedColumns
-        The columns.
     products : Products
-        Inner products of these columns.
+        Inner products of the columns.
     torque : Part
         The torque, one column.
     """
-    within, between = [], []
+    columns, within = products.columns, []
     for channel in (0, 1):
         deviations = torque.columns.channels[channel].within[:, 0]
         across = columns.within_products(torque, channel)[:, 0]
-        own = np.sum(np.square(deviations))
+        own = float(np.sum(np.square(deviations)))
         within.append(_with_last(products.within[channel], across, own))
-        of_means = [torque.across(one, channel)[:, :, 0] for one in columns.shown(channel)]
-        across, own = np.concatenate(of_means, axis=1), torque.across(torque, channel)[:, 0, 0]
-        between.append(_with_last(products.between[channel], across, own))
+
+    def of_means(channel: int, noise: int) -> Array:
+        time, precision = columns.noises.time_and_precision(channel, noise)
+        modes = torque.modes(channel, time)[:, 0]
+        across = (modes * precision) @ columns.modes(channel, time)
+        own = float(np.square(modes) @ precision)
+        return _with_last(products.between(channel, noise), across, own)
+
     *parts, misfit = columns.parts
     added = Part(misfit.columns.plus(torque.columns), columns.noises)
-    found = replace(products, within=(within[0], within[1]), between=(between[0], between[1]))
-    return TransformedColumns((*parts, added)), found
+    return Products(
+        columns=TransformedColumns((*parts, added)),
+        within=(within[0], within[1]),
+        of_means=of_means,
+    )
 
 
-def _with_last(gram: Array, across: Array, own: Array) -> Array:
+def _with_last(gram: Array, across: Array, own: float) -> Array:
     """Return inner products of columns with another one added to the last of them."""
     found = gram.copy()
-    found[..., -1, :] += across
-    found[..., -1] += across
-    found[..., -1, -1] += own
+    found[-1] += across
+    found[:, -1] += across
+    found[-1, -1] += own
     return found

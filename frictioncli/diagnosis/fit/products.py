@@ -1,45 +1,16 @@
 """Inner products of the columns of a mixed model, and of the same with further columns.
 
 Those of a channel are of the columns that show in it, of which those that show in no other come
-first.
+first. Those of pair means are worked out for the noise models that are asked for.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from frictioncli.arrays import Array, Indices
-
-
-@dataclass(frozen=True, slots=True)
-class Places:
-    """Where the columns of a model show.
-
-    Attributes
-    ----------
-    own : (ndarray of int, ndarray of int)
-        Numbers of the columns that show in friction alone, and in load alone.
-    shared : ndarray of int
-        Numbers of all others: those of the base come first, and the misfit last.
-    """
-
-    own: tuple[Indices, Indices]
-    shared: Indices
-
-    @property
-    def count(self) -> int:
-        """Number of columns, the misfit included."""
-        return int(self.shared[-1]) + 1
-
-    def shown(self, channel: int) -> Indices:
-        """Return the numbers of the columns that show in a channel: its own, then the others."""
-        return np.concatenate([self.own[channel], self.shared])
-
-    def bordered(self, width: int) -> "Places":
-        """Return the places with further columns, shown in both channels, before the misfit."""
-        last = int(self.shared[-1])
-        further = np.arange(last, last + width + 1)
-        return Places(self.own, np.concatenate([self.shared[:-1], further]))
+from frictioncli.arrays import Array
+from frictioncli.diagnosis.fit.transformed_columns import Part, Places, TransformedColumns
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,17 +87,83 @@ class Products:
 
     Attributes
     ----------
-    places : Places
-        Where the columns show.
+    columns : TransformedColumns
+        The columns.
     within : (ndarray, ndarray), shape (shown, shown)
         Of the deviations within pairs in friction and load.
-    between : (ndarray, ndarray), shape (noise models, shown, shown)
-        Of the pair means under each noise model.
+    of_means : callable
+        Those of the pair means, from the numbers of a channel and a noise model.
     """
 
-    places: Places
+    columns: TransformedColumns
     within: tuple[Array, Array]
-    between: tuple[Array, Array]
+    of_means: Callable[[int, int], Array]
+    _between: dict[tuple[int, int], Array] = field(default_factory=dict, init=False, repr=False)
+
+    @classmethod
+    def of(cls, columns: TransformedColumns) -> "Products":
+        """Return the inner products of columns.
+
+        Parameters
+        ----------
+        columns : TransformedColumns
+            The columns, the misfit last.
+        """
+
+        def of_means(channel: int, noise: int) -> Array:
+            time, precision = columns.noises.time_and_precision(channel, noise)
+            scaled = columns.modes(channel, time) * np.sqrt(precision)[:, np.newaxis]
+            return np.asarray(scaled.T @ scaled)
+
+        friction, load = (columns.within(channel) for channel in (0, 1))
+        return cls(
+            columns=columns, within=(friction.T @ friction, load.T @ load), of_means=of_means
+        )
+
+    def beside(self, own: Sequence[Part]) -> "Products":
+        """Return the inner products with further columns before the last one, the misfit.
+
+        Parameters
+        ----------
+        own : sequence of Part
+            The further columns, which may show in both channels.
+        """
+        if not own:
+            return self
+        known, new = self.columns, TransformedColumns(tuple(own))
+
+        def of_means(channel: int, noise: int) -> Array:
+            time, precision = known.noises.time_and_precision(channel, noise)
+            modes = new.modes(channel, time)
+            weighted = modes * precision[:, np.newaxis]
+            across = known.modes(channel, time).T @ weighted
+            return bordered(self.between(channel, noise), across, modes.T @ weighted)
+
+        within = []
+        for channel, before in enumerate(self.within):
+            deviations = new.within(channel)
+            across = np.vstack(
+                [
+                    one.columns.channels[channel].within.T @ deviations
+                    for one in known.shown(channel)
+                ]
+            )
+            within.append(bordered(before, across, deviations.T @ deviations))
+        return Products(columns=known.beside(own), within=(within[0], within[1]), of_means=of_means)
+
+    def between(self, channel: int, noise: int) -> Array:
+        """Return the inner products of pair means, shape (shown, shown).
+
+        Parameters
+        ----------
+        channel : int
+            0 for friction, 1 for load.
+        noise : int
+            Number of the noise model.
+        """
+        if (channel, noise) not in self._between:
+            self._between[channel, noise] = self.of_means(channel, noise)
+        return self._between[channel, noise]
 
     def chosen(self, noise: tuple[int, int]) -> ChosenProducts:
         """Return the inner products under chosen noise models.
@@ -136,96 +173,10 @@ class Products:
         noise : (int, int)
             Number of the noise model of friction and load.
         """
-        friction, load = (one[at] for one, at in zip(self.between, noise, strict=True))
-        return ChosenProducts(places=self.places, within=self.within, between=(friction, load))
-
-    def of_base(self, base: int) -> tuple[Array, Array]:
-        """Return those of the first columns alone, shape (noise models, columns, columns) each."""
-        first, second = (slice(len(own), len(own) + base) for own in self.places.own)
-        return self.between[0][:, first, first], self.between[1][:, second, second]
-
-    def with_combination(self, channel: int, combination: Array) -> Array:
-        """Return products of the columns that show with a combination of them.
-
-        Parameters
-        ----------
-        channel : int
-            0 for friction, 1 for load.
-        combination : ndarray, shape (shown,)
-            The combination.
-
-        Returns
-        -------
-        ndarray, shape (noise models, shown)
-            Of the pair means.
-        """
-        return np.asarray(self.between[channel] @ combination)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BorderedProducts:
-    """The same with further columns before the last one; without copying what is known.
-
-    Attributes
-    ----------
-    known : Products
-        Without these columns.
-    across_within, own_within : (ndarray, ndarray)
-        Products of the known columns with them, and of them with each other, of the deviations
-        within pairs in friction and load.
-    across, own : (ndarray, ndarray)
-        The same of the pair means, under each noise model.
-    """
-
-    known: Products
-    across_within: tuple[Array, Array]
-    own_within: tuple[Array, Array]
-    across: tuple[Array, Array]
-    own: tuple[Array, Array]
-
-    @property
-    def places(self) -> Places:
-        """Where the columns show: the further ones in both channels."""
-        return self.known.places.bordered(self.own[0].shape[-1])
-
-    def whole(self) -> Products:
-        """Return them as one."""
-        parts = zip(self.known.between, self.across, self.own, strict=True)
-        friction, load = (bordered(*one) for one in parts)
-        return Products(places=self.places, within=self._within(), between=(friction, load))
-
-    def chosen(self, noise: tuple[int, int]) -> ChosenProducts:
-        """Return what :meth:`Products.chosen` does."""
-        friction, load = (
-            bordered(known[at], across[at], own[at])
-            for known, across, own, at in zip(
-                self.known.between, self.across, self.own, noise, strict=True
-            )
+        friction, load = (self.between(channel, number) for channel, number in enumerate(noise))
+        return ChosenProducts(
+            places=self.columns.places, within=self.within, between=(friction, load)
         )
-        return ChosenProducts(places=self.places, within=self._within(), between=(friction, load))
-
-    def _within(self) -> tuple[Array, Array]:
-        """Return the products of the deviations within pairs as one."""
-        parts = zip(self.known.within, self.across_within, self.own_within, strict=True)
-        friction, load = (bordered(*one) for one in parts)
-        return friction, load
-
-    def of_base(self, base: int) -> tuple[Array, Array]:
-        """Return what :meth:`Products.of_base` does."""
-        return self.known.of_base(base)
-
-    def with_combination(self, channel: int, combination: Array) -> Array:
-        """Return what :meth:`Products.with_combination` does."""
-        across, own = self.across[channel], self.own[channel]
-        width = own.shape[-1]
-        before = np.append(combination[: -width - 1], combination[-1])
-        further = combination[-width - 1 : -1]
-        old = self.known.with_combination(channel, before) + across @ further
-        new = before @ across + own @ further
-        return np.concatenate([old[:, :-1], new, old[:, -1:]], axis=1)
-
-
-AnyProducts = Products | BorderedProducts
 
 
 def bordered(old: Array, across: Array, own: Array) -> Array:
@@ -233,23 +184,19 @@ def bordered(old: Array, across: Array, own: Array) -> Array:
 
     Parameters
     ----------
-    old : ndarray, shape (..., columns, columns)
+    old : ndarray, shape (columns, columns)
         Without them.
-    across : ndarray, shape (..., columns, width)
+    across : ndarray, shape (columns, width)
         Of the old columns with them.
-    own : ndarray, shape (..., width, width)
+    own : ndarray, shape (width, width)
         Of them with each other.
     """
-    count, width = old.shape[-1] - 1, own.shape[-1]
-    found = np.empty((*old.shape[:-2], count + width + 1, count + width + 1))
-    found[..., :count, :count] = old[..., :count, :count]
-    found[..., :count, -1] = old[..., :count, -1]
-    found[..., -1, :count] = old[..., -1, :count]
-    found[..., -1, -1] = old[..., -1, -1]
-    middle = slice(count, count + width)
-    found[..., :count, middle] = across[..., :count, :]
-    found[..., -1, middle] = across[..., -1, :]
-    found[..., middle, :count] = across[..., :count, :].swapaxes(-1, -2)
-    found[..., middle, -1] = across[..., -1, :]
-    found[..., middle, middle] = own
+    last, width = len(old) - 1, len(own)
+    found = np.empty((last + width + 1,) * 2)
+    before = np.append(np.arange(last), last + width)
+    middle = slice(last, last + width)
+    found[before[:, np.newaxis], before] = old
+    found[before, middle] = across
+    found[middle, before] = across.T
+    found[middle, middle] = own
     return found

@@ -9,10 +9,34 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from frictioncli.arrays import Array
+from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.fit.columns import ModelColumns
-from frictioncli.diagnosis.fit.products import BorderedProducts, Places, Products
 from frictioncli.diagnosis.noise.spectra import STRENGTHS, NoiseIndex, Spectra
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where the columns of a model show.
+
+    Attributes
+    ----------
+    own : (ndarray of int, ndarray of int)
+        Numbers of the columns that show in friction alone, and in load alone.
+    shared : ndarray of int
+        Numbers of all others: those of the base come first, and the misfit last.
+    """
+
+    own: tuple[Indices, Indices]
+    shared: Indices
+
+    @property
+    def count(self) -> int:
+        """Number of columns, the misfit included."""
+        return int(self.shared[-1]) + 1
+
+    def shown(self, channel: int) -> Indices:
+        """Return the numbers of the columns that show in a channel: its own, then the others."""
+        return np.concatenate([self.own[channel], self.shared])
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +76,23 @@ class NoiseModels:
             self._precisions[channel, time] = numbers, 1 / np.column_stack(variances)
         return self._precisions[channel, time]
 
+    def time_and_precision(self, channel: int, number: int) -> tuple[int, Array]:
+        """Return the correlation time of a noise model, and the precision of each mode.
+
+        Parameters
+        ----------
+        channel : int
+            0 for friction, 1 for load.
+        number : int
+            Number of the noise model.
+
+        Returns
+        -------
+        int, ndarray, shape (pairs,)
+            Number of the correlation time, and one over the variances at scale 1.
+        """
+        return self.indices[number][0], 1 / self.variance(channel, number)
+
     def variance(self, channel: int, number: int) -> Array:
         """Return the variance of each mode under a noise model at scale 1, shape (pairs,)."""
         time, strength = self.indices[number]
@@ -87,27 +128,6 @@ class Part:
     noises: NoiseModels
     shown: tuple[int, ...] = (0, 1)
     _modes: dict[tuple[int, int], Array] = field(default_factory=dict)
-    _across: dict[tuple[int, int], tuple["Part", Array]] = field(default_factory=dict)
-
-    def across(self, other: "Part", channel: int) -> Array:
-        """Return inner products of pair means with those of another part.
-
-        Parameters
-        ----------
-        other : Part
-            The other part.
-        channel : int
-            0 for friction, 1 for load.
-
-        Returns
-        -------
-        ndarray, shape (noise models, columns of the other, columns)
-        """
-        key = (channel, id(other))
-        if key not in self._across:
-            # the other part lives as long as its number
-            self._across[key] = (other, _inner_products(other, self, channel))
-        return self._across[key][1]
 
     def take(self, chosen: slice | list[int]) -> "Part":
         """Return some of the columns."""
@@ -195,97 +215,31 @@ class TransformedColumns:
         shown = self.shown(channel)
         return np.vstack([one.columns.channels[channel].within.T @ columns for one in shown])
 
-    def products(self) -> Products:
-        """Return inner products of all columns."""
-        within = [one.T @ one for one in (self.within(0), self.within(1))]
-        between = [
-            _joined([[_inner_products(one, two, channel) for two in shown] for one in shown])
-            for channel, shown in enumerate((self.shown(0), self.shown(1)))
-        ]
-        return Products(
-            places=self.places,
-            within=(within[0], within[1]),
-            between=(between[0], between[1]),
-        )
-
-    def bordered(self, products: Products, own: Sequence[Part]) -> Products:
-        """Return inner products with further columns before the last one, the misfit.
+    def combined(self, channel: int, time: int, combination: Array) -> Array:
+        """Return a combination of the columns in the eigenvectors, shape (pairs,).
 
         Parameters
         ----------
-        products : Products
-            Inner products of these columns.
+        channel : int
+            0 for friction, 1 for load.
+        time : int
+            Number of the correlation time.
+        combination : ndarray, shape (columns,)
+            The combination.
+        """
+        ends = np.cumsum([one.columns.count for one in self.parts])
+        shares = zip(self.parts, np.split(combination, ends[:-1]), strict=True)
+        return np.asarray(
+            sum(one.modes(channel, time) @ share for one, share in shares if channel in one.shown)
+        )
+
+    def beside(self, own: Sequence[Part]) -> "TransformedColumns":
+        """Return the columns with further ones before the last one, the misfit.
+
+        Parameters
+        ----------
         own : sequence of Part
             The further columns.
         """
-        return self.beside(products, own).whole() if own else products
-
-    def beside(self, products: Products, own: Sequence[Part]) -> BorderedProducts:
-        """Return the same without copying what is known, for columns that are used once.
-
-        Parameters
-        ----------
-        products : Products
-            Inner products of these columns.
-        own : sequence of Part
-            The further columns, which may show in both channels.
-        """
-        new = TransformedColumns(tuple(own))
-        within = [new.within(channel) for channel in (0, 1)]
-        shown = self.shown(0), self.shown(1)
-        across_within, across, of_own = (
-            [
-                np.vstack([one.columns.channels[channel].within.T @ columns for one in parts])
-                for channel, (columns, parts) in enumerate(zip(within, shown, strict=True))
-            ],
-            *(
-                [
-                    _joined([[one.across(part, channel) for one in own] for part in parts])
-                    for channel, parts in enumerate(both)
-                ]
-                for both in (shown, (own, own))
-            ),
-        )
-        return BorderedProducts(
-            known=products,
-            across_within=(across_within[0], across_within[1]),
-            own_within=(within[0].T @ within[0], within[1].T @ within[1]),
-            across=(across[0], across[1]),
-            own=(of_own[0], of_own[1]),
-        )
-
-
-def _joined(blocks: Sequence[Sequence[Array]]) -> Array:
-    """Return rows of blocks as one array, shape (noise models, columns, columns)."""
-    return np.concatenate([np.concatenate(row, axis=2) for row in blocks], axis=1)
-
-
-def _inner_products(first: Part, second: Part, channel: int) -> Array:
-    """Return inner products of pair means, shape (noise models, columns, columns)."""
-    noises = first.noises
-    found = np.zeros((len(noises.indices), first.columns.count, second.columns.count))
-    rows, columns = (
-        np.flatnonzero(one.columns.channels[channel].means.any(axis=0)) for one in (first, second)
-    )
-    if not (len(rows) and len(columns)):
-        return found
-    places = np.ix_(rows, columns)
-    for time in range(len(noises.spectra[channel].spectra)):
-        left = first.modes(channel, time)
-        left = left if len(rows) == left.shape[1] else left[:, rows]
-        right = second.modes(channel, time)[:, columns]
-        numbers, precisions = noises.precisions(channel, time)
-        if first is second:
-            # the product of an array with itself takes half the time
-            for number, precision in zip(numbers, precisions.T, strict=True):
-                scaled = right * np.sqrt(precision)[:, np.newaxis]
-                found[number][places] = scaled.T @ scaled
-            continue
-        weighted = precisions[:, :, np.newaxis] * right[:, np.newaxis]
-        together = left.T @ weighted.reshape(len(right), -1)
-        products = np.moveaxis(together.reshape(len(rows), len(numbers), -1), 1, 0)
-        if len(rows) == found.shape[1] and len(columns) == found.shape[2]:
-            found[numbers] = products
-        else:
-            found[np.ix_(np.array(numbers), rows, columns)] = products
-    return found
+        *before, misfit = self.parts
+        return TransformedColumns((*before, *own, misfit))

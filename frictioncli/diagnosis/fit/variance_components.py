@@ -19,7 +19,8 @@ from frictioncli.diagnosis.fit.mixed_model import (
     evaluate,
     evaluate_chosen,
 )
-from frictioncli.diagnosis.fit.products import AnyProducts, ChosenProducts, Places
+from frictioncli.diagnosis.fit.products import ChosenProducts, Products
+from frictioncli.diagnosis.fit.transformed_columns import Places, TransformedColumns
 
 _ROUNDS = 2
 """Rounds in which the noise models are chosen anew."""
@@ -35,7 +36,7 @@ _LONGEST_STEP = 1.5
 
 
 def fit_variances(
-    components: Components, products: AnyProducts, known: int, *starts: Variances
+    components: Components, products: Products, known: int, *starts: Variances
 ) -> MixedFit:
     """Return the fit with the variance components that are most probable; see :func:`evaluate`.
 
@@ -58,7 +59,7 @@ def fit_variances(
 
 def _fitted_from(
     components: Components,
-    products: AnyProducts,
+    products: Products,
     known: int,
     start: Variances,
     found: set[tuple[int, int]],
@@ -159,24 +160,22 @@ def _sums(values: Array, places: tuple[slice, ...]) -> Array:
     return np.array([values[place].sum() for place in places])
 
 
-def _with_likeliest_noise(
-    components: Components, products: AnyProducts, fit: MixedFit
-) -> Variances:
+def _with_likeliest_noise(components: Components, products: Products, fit: MixedFit) -> Variances:
     """Return the variances with the likeliest noise model of the pair means of each channel.
 
     The base is fitted anew under every noise model; the other coefficients stay.
     """
-    base = components.base
+    base, columns = components.base, products.columns
     # the base is fitted anew
     left = np.append(-fit.coefficients, 1.0)
     left[:base] = 0.0
-    bases = components.bases or [BaseProducts.of(one) for one in products.of_base(base)]
+    bases = components.bases or [
+        BaseProducts.of_part(columns.parts[0], base, channel) for channel in (0, 1)
+    ]
     noise, scales = [], []
-    for channel, own in enumerate(products.places.own):
-        combination = left[products.places.shown(channel)]
-        with_left = products.with_combination(channel, combination)
-        whole = with_left @ combination
-        explained = bases[channel].explained(with_left[:, len(own) : len(own) + base])
+    for channel in (0, 1):
+        whole, right = _under_each_model(columns, channel, base, left)
+        explained = bases[channel].explained(right)
         square = np.maximum(whole - explained, 1e-300)
         freedom = max(components.pairs - bases[channel].rank, 1)
         cost = freedom * np.log(square) + components.determinants[channel]
@@ -186,3 +185,36 @@ def _with_likeliest_noise(
         noise.append(best)
         scales.append(max(float(square[best]) / freedom, LEAST_VARIANCE))
     return replace(fit.variances, noise=(noise[0], noise[1]), between=(scales[0], scales[1]))
+
+
+def _under_each_model(
+    columns: TransformedColumns, channel: int, base: int, combination: Array
+) -> tuple[Array, Array]:
+    """Return squares of a combination of columns, and products of the base with it.
+
+    Parameters
+    ----------
+    columns : TransformedColumns
+        Columns of the model, in whose first part those of the base come first.
+    channel : int
+        0 for friction, 1 for load.
+    base : int
+        Number of the columns of the base.
+    combination : ndarray, shape (columns,)
+        The combination.
+
+    Returns
+    -------
+    ndarray, shape (noise models,), and ndarray, shape (noise models, base)
+        Of the pair means under each noise model.
+    """
+    noises = columns.noises
+    whole = np.empty(len(noises.indices))
+    right = np.empty((len(noises.indices), base))
+    for time in range(len(noises.spectra[channel].spectra)):
+        modes = columns.combined(channel, time, combination)
+        numbers, precisions = noises.precisions(channel, time)
+        weighted = precisions * modes[:, np.newaxis]
+        whole[numbers] = modes @ weighted
+        right[numbers] = weighted.T @ columns.parts[0].modes(channel, time)[:, :base]
+    return whole, right

@@ -268,7 +268,7 @@ def _beside_function(
     layout = step.problem.layout
     columns = reduced(layout, scale * basis.friction, scale * basis.load)
     own = Part(columns, step.precomputed.noises)
-    products = step.columns.beside(step.products, [own])
+    products = step.products.beside([own])
     place = slice(step.known, step.known + columns.count)
     amplitude = float(expected.prior[0]) if len(expected.prior) else _unit_amplitude(step)
     components = expected.beside_function(place, amplitude)

@@ -183,7 +183,7 @@ class PlantedFits:
         self.add(step.fit.variances)
         if first:
             own = self.part.take(self._places(number)[1].tolist())
-            products = step.columns.beside(step.products, [own])
+            products = step.products.beside([own])
             starts = step.fit.variances, step.precomputed.start
             self.add(fit_variances(step.components, products, step.known, *starts).variances)
 

@@ -51,10 +51,8 @@ class Precomputed:
         Columns of the base model and of these.
     discrepancy : Discrepancy
         Random functions beside the base.
-    columns : TransformedColumns
-        Base, discrepancy and the misfit, which is the last.
     products : Products
-        Their inner products.
+        Inner products of the columns of base and discrepancy, and of the misfit, which is the last.
     point : (float, float)
         Standard deviation of an angle bin about its pair in friction and load. [N·m]
     start : Variances
@@ -71,7 +69,6 @@ class Precomputed:
     span_of_base: Array
     base: ModelColumns
     discrepancy: Discrepancy
-    columns: TransformedColumns
     products: Products
     point: tuple[float, float]
     start: Variances
@@ -123,8 +120,10 @@ class Precomputed:
             max(spectra.white, deviation**2 * 1e-6, LEAST_VARIANCE)
             for spectra, deviation in zip(noises.spectra, point, strict=True)
         ]
-        products = columns.products()
-        of_base = [BaseProducts.of(one) for one in products.of_base(base.count)]
+        products = Products.of(columns)
+        of_base = [
+            BaseProducts.of_part(columns.parts[0], base.count, channel) for channel in (0, 1)
+        ]
         return cls(
             problem=problem,
             measurement=tuple(bases),
@@ -132,7 +131,6 @@ class Precomputed:
             span_of_base=span_of_base,
             base=base,
             discrepancy=smooth,
-            columns=columns,
             products=products,
             point=point,
             start=Variances(
@@ -158,6 +156,11 @@ class Precomputed:
                 bases=(of_base[0], of_base[1]),
             ),
         )
+
+    @property
+    def columns(self) -> TransformedColumns:
+        """Base, discrepancy and the misfit, which is the last."""
+        return self.products.columns
 
     @property
     def noises(self) -> NoiseModels:

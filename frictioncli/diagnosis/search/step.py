@@ -43,19 +43,17 @@ class Step:
         The data and the noise models.
     accepted : tuple of EffectFit
         Effects accepted so far.
-    columns : TransformedColumns
-        Columns of base, discrepancy and accepted effects; the misfit is the last.
     components : Components
         What the variance components belong to.
     products : Products
-        Inner products of the columns.
+        Inner products of the columns of base, discrepancy and accepted effects; the misfit is the
+        last.
     fit : MixedFit
         The null hypothesis.
     """
 
     precomputed: Precomputed
     accepted: tuple[EffectFit, ...]
-    columns: TransformedColumns
     components: Components
     products: Products
     fit: MixedFit
@@ -74,17 +72,14 @@ class Step:
             )
             for one in accepted
         ]
-        *before, misfit = precomputed.columns.parts
-        columns = TransformedColumns((*before, *own, misfit))
-        products = precomputed.columns.bordered(precomputed.products, own)
+        products = precomputed.products.beside(own)
         components = precomputed.components
         return cls(
             precomputed=precomputed,
             accepted=tuple(accepted),
-            columns=columns,
             components=components,
             products=products,
-            fit=fit_variances(components, products, columns.count - 1, precomputed.start),
+            fit=fit_variances(components, products, products.columns.count - 1, precomputed.start),
         )
 
     def planted(self, basis: Basis, coefficients: Array) -> "Step":
@@ -99,11 +94,10 @@ class Step:
         """
         torque = Basis(*(one @ coefficients[:, np.newaxis] for one in basis))
         own = Part(basis_columns(self.problem, torque), self.precomputed.noises)
-        columns, products = with_torque(self.columns, self.products, own)
+        products = with_torque(self.products, own)
         start = self.precomputed.start
         return replace(
             self,
-            columns=columns,
             products=products,
             fit=fit_variances(self.components, products, self.known, start),
             _found={},
@@ -120,6 +114,11 @@ class Step:
     def problem(self) -> Problem:
         """The data."""
         return self.precomputed.problem
+
+    @property
+    def columns(self) -> TransformedColumns:
+        """Columns of base, discrepancy and accepted effects; the misfit is the last."""
+        return self.products.columns
 
     @property
     def known(self) -> int:
@@ -303,7 +302,7 @@ class Step:
     def _refitted(self, catalogue: Catalogue, number: int, shape: int) -> MixedFit:
         """Return the fit of a hypothesis at one of its shapes, with the variance components."""
         own = catalogue.shape_part(number, shape)
-        products = self.columns.beside(self.products, [own])
+        products = self.products.beside([own])
         starts = self.fit.variances, self.precomputed.start
         return fit_variances(self.components, products, self.known, *starts)
 
