@@ -15,6 +15,7 @@ for each :math:`\theta` makes every :math:`V` diagonal,
 tried on many candidate explanations at little cost.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +28,9 @@ Modes = tuple[Array, ...]
 
 NoiseIndex = tuple[int, int]
 """Index of a noise model in the grid: of its correlation time and of its drift's strength."""
+
+_DECIMALS = 9
+"""Of the profile, so that those of one form are equal whatever their scale was."""
 
 _TIMES = 6
 """Number of correlation times, from the distance of the pairs to the length of the run."""
@@ -112,7 +116,13 @@ class Spectra:
         )
 
 
-def spectra_of(layout: PairLayout, point: float, extra: Array, residual: Array) -> Spectra:
+def spectra_of(
+    layout: PairLayout,
+    point: float,
+    extra: Array,
+    residual: Array,
+    before: Iterable[Spectra] = (),
+) -> Spectra:
     """Return the covariance spectra of the pair means of a channel.
 
     Parameters
@@ -125,6 +135,8 @@ def spectra_of(layout: PairLayout, point: float, extra: Array, residual: Array) 
         Further variance that is known beforehand, as of an uncertain temperature. [(N·m)²]
     residual : ndarray, shape (pairs,)
         Pair means of the residual of the base model. [N·m]
+    before : iterable of Spectra, optional
+        Spectra of the same pairs, of which one may have the same profile.
 
     Notes
     -----
@@ -134,19 +146,23 @@ def spectra_of(layout: PairLayout, point: float, extra: Array, residual: Array) 
     known = point**2 / layout.bins + extra
     pair = max(_difference_variance(layout, residual) - float(np.mean(known)), 0.0)
     white = known + max(pair, 0.05 * float(np.mean(known)))
-    profile = white / np.mean(white)
+    profile: Array = (white / np.mean(white)).round(_DECIMALS)
     heads = np.flatnonzero(np.diff(layout.run, prepend=-1))
     ends = [*heads[1:], len(layout.run)]
     runs = tuple(slice(int(a), int(b)) for a, b in zip(heads, ends, strict=True))
     shortest = layout.distance
     longest = max(float(np.ptp(layout.time[part])) for part in runs)
     times = np.geomspace(shortest, max(longest, 2 * shortest), _TIMES)
+    alike = (one.spectra for one in before if np.array_equal(one.profile, profile))
+    spectra = next(alike, None) or tuple(
+        _spectrum(layout.time, float(time), profile, runs) for time in times
+    )
     return Spectra(
         profile=profile,
         known=float(np.mean(known)),
         white=float(np.mean(white)),
         runs=runs,
-        spectra=tuple(_spectrum(layout.time, float(time), profile, runs) for time in times),
+        spectra=spectra,
     )
 
 

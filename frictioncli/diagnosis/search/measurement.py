@@ -19,6 +19,7 @@ from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.noise.significance import NullDistribution
+from frictioncli.diagnosis.noise.spectra import Spectra
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import sizes_of
 from frictioncli.diagnosis.search.possible import (
@@ -72,6 +73,7 @@ def beside_base(
     discrepancy: float = SHARE,
     measurement: Sequence[Effect] = MEASUREMENT_EFFECTS,
     found: Sequence[EffectFit] = (),
+    spectra: Sequence[Spectra] = (),
 ) -> BesideBase:
     """Return what is computed once, with the effects of the measurement that stand beside the base.
 
@@ -91,6 +93,8 @@ def beside_base(
     found : sequence of EffectFit, optional
         Properties of the joint that are known to be there: without them, what they add may look
         like an effect of the measurement, or hide one.
+    spectra : sequence of Spectra, optional
+        Spectra of the same pairs, so that none is worked out twice.
     """
     beside = applicable(measurement, problem.table)
     if problem.has_load_channel:
@@ -100,7 +104,8 @@ def beside_base(
     before: tuple[Cause, ...] = ()
     precomputed: Precomputed | None = None
     while True:
-        precomputed = Precomputed.of(problem, beside, discrepancy, precomputed)
+        precomputed = Precomputed.of(problem, beside, discrepancy, precomputed, spectra)
+        spectra = precomputed.noises.spectra
         causes = measurement_causes(Step.of(precomputed, found), beside)
         against = _moved(before, causes, refused[-1:])
         before = ()

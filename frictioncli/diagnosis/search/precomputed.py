@@ -26,7 +26,7 @@ from frictioncli.diagnosis.fit.mixed_model import (
 from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.transformed_columns import NoiseModels, Part, TransformedColumns
 from frictioncli.diagnosis.noise.discrepancy import SHARE, SPREAD, Discrepancy, discrepancy_of
-from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
+from frictioncli.diagnosis.noise.spectra import STRENGTHS, Spectra, spectra_of
 from frictioncli.effects.base import Basis, Effect
 from frictioncli.linear_algebra import least_squares_residual
 from frictioncli.model.noise import Noise
@@ -84,6 +84,7 @@ class Precomputed:
         measurement: Sequence[Effect] = (),
         discrepancy: float = SHARE,
         before: "Precomputed | None" = None,
+        spectra: Sequence[Spectra] = (),
     ) -> "Precomputed":
         """Return the columns and noise models of a problem.
 
@@ -97,13 +98,15 @@ class Precomputed:
             RMS of the discrepancy that is expected, relative to the mean friction; 0 for none.
         before : Precomputed, optional
             The same of other effects of the measurement, for what does not depend on these.
+        spectra : sequence of Spectra, optional
+            Spectra of the same pairs, so that none is worked out twice.
         """
         layout = problem.layout
         bases = [problem.basis(one, {}) for one in measurement]
         base = joined([base_columns(problem), *(basis_columns(problem, one) for one in bases)])
         misfit = misfit_column(problem)
         point = point_noise(problem, bases)
-        noises = _noise_models(problem, base, misfit, point)
+        noises = _noise_models(problem, base, misfit, point, spectra)
         span_of_base = span_of(problem) if before is None else before.span_of_base
         if before is None:
             smooth = discrepancy_of(problem, span_of_base, discrepancy)
@@ -117,8 +120,8 @@ class Precomputed:
         ]
         columns = TransformedColumns((Part(base, noises), *functions, Part(misfit, noises)))
         quiet = [
-            max(spectra.white, deviation**2 * 1e-6, LEAST_VARIANCE)
-            for spectra, deviation in zip(noises.spectra, point, strict=True)
+            max(one.white, deviation**2 * 1e-6, LEAST_VARIANCE)
+            for one, deviation in zip(noises.spectra, point, strict=True)
         ]
         products = Products.of(columns)
         of_base = [
@@ -191,7 +194,11 @@ class Precomputed:
 
 
 def _noise_models(
-    problem: Problem, base: ModelColumns, misfit: ModelColumns, point: tuple[float, float]
+    problem: Problem,
+    base: ModelColumns,
+    misfit: ModelColumns,
+    point: tuple[float, float],
+    spectra: Sequence[Spectra],
 ) -> NoiseModels:
     """Return the noise models of the pair means of both channels."""
     extra = (problem.temperature_variance, np.zeros_like(problem.layout.time))
@@ -201,6 +208,7 @@ def _noise_models(
             deviation,
             known,
             least_squares_residual(columns.means, one.means[:, 0], tolerance=RANK),
+            spectra,
         )
         for deviation, known, columns, one in zip(
             point, extra, base.channels, misfit.channels, strict=True

@@ -101,7 +101,13 @@ class Preparation:
             own = replace(before.precomputed, problem=problem)
             beside = replace(before, precomputed=own)
         else:
-            beside = beside_base(problem, discrepancy, measurement, self._found)
+            spectra = [
+                spectra
+                for one in self._known
+                if one.problem.layout is problem.layout
+                for spectra in one.beside.precomputed.noises.spectra
+            ]
+            beside = beside_base(problem, discrepancy, measurement, self._found, spectra)
         found = _Prepared(problem, discrepancy, measurement, beside, {})
         others = [one for one in self._known if one not in alike]
         self._known = [*others[1 - _AT_ONCE :], found]
