@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from frictioncli.diagnosis.fit.columns import base_rows
+from frictioncli.diagnosis.fit.columns import ChannelColumns, ModelColumns, base_rows, joined
 from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.mixed_model import evaluate, weights_of
-from frictioncli.diagnosis.fit.products import Places, Products
+from frictioncli.diagnosis.fit.products import Products
+from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 from frictioncli.diagnosis.noise.discrepancy import discrepancy_of
 from frictioncli.diagnosis.noise.discrepancy_functions import FINE, SPEED_RIPPLE
 from frictioncli.diagnosis.search.precomputed import Precomputed
@@ -271,27 +272,20 @@ def test_only_the_part_that_the_base_leaves_counts(joint):
     ridge = weights_of(components, step.fit.variances, count)
     assert not ridge[: components.base].any()
     assert (ridge[components.base : count] > 0).all()
-    within, between, places = [], [], step.products.places
     size = np.zeros(count + 1)
     for channel in (0, 1):
-        products = step.products.within[channel], step.products.between[channel]
-        size[places.shown(channel)] += np.diag(products[0] + products[1][0])
+        products = step.products.within[channel] + step.products.between(channel, 0)
+        size[step.columns.places.shown(channel)] += np.diag(products)
     shift = np.eye(count + 1)
     generator = np.random.default_rng(0)
     shift[: components.base, components.base : count] = generator.normal(
         size=(components.base, count - components.base)
     ) / np.maximum(np.sqrt(size[: components.base, np.newaxis]), 1e-9)
-    for channel in (0, 1):
-        # once moved, all columns show in both channels
-        shown = shift[places.shown(channel)]
-        within.append(shown.T @ step.products.within[channel] @ shown)
-        between.append(shown.T @ step.products.between[channel] @ shown)
-    none = np.zeros(0, int)
-    moved = Products(
-        places=Places((none, none), np.arange(count + 1)),
-        within=tuple(within),
-        between=tuple(between),
-    )
+    # once moved, all columns show in both channels
+    whole = joined([part.columns for part in step.columns.parts])
+    channels = (ChannelColumns(one.within @ shift, one.means @ shift) for one in whole.channels)
+    part = Part(ModelColumns(*channels), step.precomputed.noises)
+    moved = Products.of(TransformedColumns((part,)))
     before = evaluate(components, step.products, count, step.fit.variances)
     after = evaluate(components, moved, count, step.fit.variances)
     assert after.objective == pytest.approx(before.objective, abs=1e-3)
