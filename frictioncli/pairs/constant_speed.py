@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.lib.stride_tricks import as_strided
 
-from frictioncli.arrays import Array, Numbers
-from frictioncli.pairs.moves import SMOOTHING, half_window
+from frictioncli.arrays import Array, Flags, Numbers
+from frictioncli.pairs.moves import SMOOTHING, cut_off, half_window
 from frictioncli.pairs.ringing import HOLD, ringing_ends
 from frictioncli.pairs.settings import SteadySettings
 from frictioncli.pairs.slices import (
@@ -131,7 +131,9 @@ def constant_speed_segments(
     several = np.bincount(candidate, minlength=len(start))[candidate] > 1
     low = np.where(several, begin, low[candidate])
     high = np.where(several, end, high[candidate])
-    settled, margin = _trimmed(time, begin, end, width[move], settings)
+    mean = np.abs(total[move_stop] - total[move_start]) / length
+    cut = cut_off(time, velocity, move_start, move_stop, _DIP * mean)[move]
+    settled, margin = _trimmed(time, begin, end, width[move], cut, settings)
     rung = _after_ringing(time, np.where(several, begin, quiet), settled, (begin, end), settings)
     long_enough = margin - rung >= settings.min_samples
     held = int(np.sum(end - begin))
@@ -283,13 +285,19 @@ def _densest(speed: Array, start: Numbers, stop: Numbers) -> tuple[Array, Array]
 
 
 def _trimmed(
-    time: Array, begin: Numbers, end: Numbers, width: Array, settings: SteadySettings
+    time: Array, begin: Numbers, end: Numbers, width: Array, cut: Flags, settings: SteadySettings
 ) -> tuple[Numbers, Numbers]:
-    """Return plateaus without the settling at their start and the smoothed edge at their end."""
+    """Return plateaus without the settling at their start and the smoothed edge at their end.
+
+    Both are shorter in short moves, but not in short pieces of moves that a gap of the log cuts
+    off: these accelerate and ring as long as the whole move.
+    """
     quarter = (time[end - 1] - time[begin]) / 4
-    settled = np.searchsorted(time, time[begin] + np.minimum(settings.settling, quarter))
+    settling = np.where(cut, settings.settling, np.minimum(settings.settling, quarter))
+    settled = np.minimum(np.searchsorted(time, time[begin] + settling), end)
     margin = np.minimum(half_window(time, begin, end, width), (end - begin) // 4)
-    return np.minimum(settled, end), end - margin
+    whole = end - np.searchsorted(time, time[end - 1] - SMOOTHING, side="right")
+    return settled, np.maximum(end - np.where(cut, whole, margin), settled)
 
 
 def _after_ringing(

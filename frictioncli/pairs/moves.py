@@ -160,3 +160,41 @@ def moves(direction: NDArray[np.int8], time: Array, period: float) -> tuple[Numb
         start = np.repeat(start, cuts) + number * LONGEST_MOVE
         stop = np.minimum(start + LONGEST_MOVE, np.repeat(stop, cuts))
     return start, stop
+
+
+def cut_off(
+    time: Array, velocity: Array, start: Numbers, stop: Numbers, least: Array
+) -> NDArray[np.bool_]:
+    """Return which moves are cut off by a gap in the log: beside it the joint does not stand.
+
+    Parameters
+    ----------
+    time : ndarray, shape (samples,)
+        Increasing times of one recording. [s]
+    velocity : ndarray, shape (samples,)
+        Joint velocity. [deg/s]
+    start, stop : ndarray of int, shape (moves,)
+        First and past-the-end sample of each move.
+    least : ndarray, shape (moves,)
+        Speed below which the joint stands or begins to move. [deg/s]
+
+    Returns
+    -------
+    ndarray of bool, shape (moves,)
+        Whether a part of the move is missing.
+
+    Examples
+    --------
+    >>> time = np.array([0.0, 0.1, 0.2, 0.3, 1.3, 1.4, 1.5])
+    >>> velocity = np.array([1.0, 20.0, 50.0, 50.0, 50.0, 20.0, 1.0])
+    >>> cut_off(time, velocity, np.array([0, 4]), np.array([4, 7]), np.full(2, 5.0)).tolist()
+    [True, True]
+    >>> cut_off(time, velocity, np.array([0, 4]), np.array([4, 7]), np.full(2, 60.0)).tolist()
+    [False, False]
+    """
+    first, last = start, stop - 1
+    longest = _GAP * (time[last] - time[first]) / np.maximum(last - first, 1)
+    before = time[first] - time[np.maximum(first - 1, 0)] > longest
+    after = time[np.minimum(stop, len(time) - 1)] - time[last] > longest
+    begun, goes_on = np.abs(velocity[first]) > least, np.abs(velocity[last]) > least
+    return np.asarray((before & begun) | (after & goes_on))
