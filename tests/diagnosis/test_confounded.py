@@ -114,6 +114,32 @@ def test_a_step_at_the_start_of_runs_may_be_friction_after_a_rest(joint, parts, 
 
 
 @pytest.mark.parametrize(
+    ("places", "expected"),
+    [
+        ([5, 15, 20], "undetermined"),
+        # two pairs after the rest, a pair before it, once only
+        ([5, 6, 15, 16], "named"),
+        ([4, 14, 19], "named"),
+        ([5], "named"),
+    ],
+)
+def test_a_payload_of_the_first_pairs_after_rests_may_be_friction_there(joint, places, expected):
+    """Every fifth pair follows a rest of a minute, all others at once."""
+    pairs = len(joint.layout.time)
+    _, heads = np.unique(joint.layout.row_pair, return_index=True)
+    stroke = np.maximum.reduceat(joint.table.position, heads)
+    stroke -= np.minimum.reduceat(joint.table.position, heads)
+    moving = 2 * stroke / joint.layout.speed
+    pause = np.where(np.arange(pairs) % 5 == 0, 60.0, 0.5)
+    time = np.cumsum(moving + pause) - moving / 2
+    rested = replace(joint, layout=replace(joint.layout, time=time))
+    shape = history([(place / pairs, (place + 1) / pairs) for place in places])
+    ((found, reason),) = standing(rested, of("payload_change", 0.6, shape=shape))
+    assert found == expected
+    assert ("after rests" in reason) == (expected != "named")
+
+
+@pytest.mark.parametrize(
     ("parts", "expected"),
     [
         # the second half of each of two runs, as the joint is warm

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array, Flags
+from frictioncli.diagnosis.data.motion_history import pauses_of
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.data.temperature_direction import temperature_direction
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
@@ -14,6 +15,7 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.confounded import NO_TEMPERATURE, has_temperature
 from frictioncli.effects.history import present
 from frictioncli.effects.pair_series import measured_share
+from frictioncli.effects.payload_change import EFFECT as PAYLOAD_CHANGE
 from frictioncli.effects.rest_recovery import EFFECT as REST_RECOVERY
 from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
@@ -32,7 +34,7 @@ _APART = 0.98
 which the change goes with the temperature."""
 
 _SEVERAL = 2
-"""Runs in which a change comes or goes, from which it recurs."""
+"""Runs in which a change comes or goes, or series of pairs, from which it recurs."""
 
 _PAUSE = 120.0
 """Time from pair to pair in which the temperature of a joint may become another one. [s]"""
@@ -50,11 +52,23 @@ _COMES_WITH_TURN = (
     " {other} may look the same"
 )
 
+_REST = 10.0
+"""Pause between two pairs that is a rest. [s]"""
+
+_FIRST_AFTER_RESTS = 0.9
+"""Share of the pairs with a change that follow a rest and whose next pair, at once, is without,
+from which the change goes with the first pair after a rest."""
+
+_IN_FIRST_PAIRS = (
+    "it is there only in the first pairs after rests, where friction that falls within the first"
+    " move would look the same"
+)
+
 _AT_START = "it is there only at the start of runs, where friction after a rest would look the same"
 
 
-def doubtful_step(fit: EffectFit, problem: Problem) -> str:
-    """Return why a step of friction may be something else; empty if not, and for other effects.
+def doubtful_change(fit: EffectFit, problem: Problem) -> str:
+    """Return why a step of friction or a payload may be something else; empty if not.
 
     Parameters
     ----------
@@ -63,6 +77,8 @@ def doubtful_step(fit: EffectFit, problem: Problem) -> str:
     problem : Problem
         The joint's rows.
     """
+    if fit.effect is PAYLOAD_CHANGE:
+        return _in_first_pairs(_there(fit, problem), problem)
     if fit.effect is not STEP_CHANGE:
         return ""
     there = _there(fit, problem)
@@ -140,6 +156,25 @@ def _after_pauses(there: Flags, problem: Problem) -> str:
     order = np.argsort(clock, kind="stable")
     changes = np.diff(there[order].astype(int)) != 0
     return NO_TEMPERATURE if np.any(np.diff(clock[order])[changes] > _PAUSE) else ""
+
+
+def _in_first_pairs(there: Flags, problem: Problem) -> str:
+    """Return why a payload may be friction in the first moves after rests; empty if it is not.
+
+    Friction that falls within a pair differs between its moves, and half of that is in the load. A
+    payload that comes in a rest does not go without one.
+    """
+    layout = problem.layout
+    _, heads = np.unique(layout.row_pair, return_index=True)
+    low, high = (one.reduceat(problem.table.position, heads) for one in (np.minimum, np.maximum))
+    pause = pauses_of(layout, 2 * (high - low))
+    rested = np.append(True, (np.diff(layout.run) != 0) | (pause > _REST))
+    for one in (there, ~there):
+        goes = one & ~np.append(one[1:] | rested[1:], True)
+        first = int(np.sum(goes & rested))
+        if first >= max(_SEVERAL, _FIRST_AFTER_RESTS * int(one.sum())):
+            return _IN_FIRST_PAIRS
+    return ""
 
 
 def _at_start_of_runs(there: Flags, problem: Problem) -> str:

@@ -16,7 +16,7 @@ from frictioncli.diagnosis.search.confounded import (
     without_forms_of_ends,
     without_forms_of_others,
 )
-from frictioncli.diagnosis.search.doubtful_steps import doubtful_step, without_forms_at_turns
+from frictioncli.diagnosis.search.doubtful_steps import doubtful_change, without_forms_at_turns
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.possible import (
     ON_BOUND,
@@ -107,7 +107,7 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
         return replace(cause, standing="undetermined", reason="it may be noise")
     doubt = _impossible(cause, problem)
     doubt = doubt or confounded(cause.fit.effect, problem)
-    doubt = doubt or doubtful_step(cause.fit, problem) or hardly_repeats(cause.fit, problem)
+    doubt = doubt or doubtful_change(cause.fit, problem) or hardly_repeats(cause.fit, problem)
     if doubt:
         return replace(cause, standing="undetermined", reason=doubt)
     if low > margin:
