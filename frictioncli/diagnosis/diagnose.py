@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.diagnosis.data.problem import Misfit, Problem
+from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.diagnosis.data.worst_misfits import worst_misfits
 from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
 from frictioncli.diagnosis.empirical.on_new_run import structure_on_new_run
@@ -158,8 +159,7 @@ def diagnose_joint(
     ramps : RampLog, optional
         Measurements outside the constant-velocity segments.
     doubt : str, optional
-        Why no cause but those of the measurement can have a name, as where moves carry two loads
-        in turns; empty where some can.
+        Why no cause but those of the measurement can have a name; empty where some can.
 
     Raises
     ------
@@ -167,8 +167,8 @@ def diagnose_joint(
         If there are too few pairs.
     """
     joint = int(torques["joint"].iloc[0])
-    runs = sorted(torques["run"].unique())
-    held_out = str(runs[-1]) if len(runs) > 1 else None
+    runs = runs_in_order(torques)
+    held_out = runs[-1] if len(runs) > 1 else None
     pairs = torques[torques["run"] != held_out].groupby(["run", "pair"], observed=True).ngroups
     if pairs < LEAST_PAIRS:
         raise NotEnoughData(

@@ -29,6 +29,7 @@ from frictioncli.diagnosis.data.motion_history import (
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.pose_gravity import gravities_by_pose
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.data.run_order import sorted_rows
 from frictioncli.diagnosis.data.temperature_error import temperature_error
 from frictioncli.diagnosis.data.within_noise import WithinNoise
 from frictioncli.effects.base import EffectTable
@@ -61,7 +62,7 @@ def build_problems(
     Problem, Problem or None
         Of all other runs, and of the hold-out run where there is one.
     """
-    rows = torques.sort_values(["run", "time", "pair", "position"], ignore_index=True)
+    rows = sorted_rows(torques).reset_index(drop=True)
     new = (rows["run"] == held_out).to_numpy()
     load = rows["load_torque"].to_numpy(float)
     form = _gravity_form(rows[~new], load[~new])
@@ -146,7 +147,7 @@ def simulated(
     Index, Problem
         Labels of the rows of ``torques`` in the order of the problem, and the problem.
     """
-    rows = torques.sort_values(["run", "time", "pair", "position"])
+    rows = sorted_rows(torques)
     form = form or form_of(gravity)
     columns = form.columns(rows)
     smooth = rows["load"].isna().all()

@@ -279,7 +279,7 @@ def _when(diagnosis: Diagnosis, cause: Cause) -> str:
     """Return the runs and hours in which a change was there; empty for what always is."""
     if cause.fit.effect.moments is None:
         return ""
-    runs = sorted({*diagnosis.runs, *filter(None, [diagnosis.held_out])})
+    runs = list(dict.fromkeys([*diagnosis.runs, *filter(None, [diagnosis.held_out])]))
     return history_text(cause.fit.shape, diagnosis.base.all_runs, runs)
 
 
