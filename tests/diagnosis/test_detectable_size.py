@@ -8,6 +8,7 @@ import pytest
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import misfit_column
 from frictioncli.diagnosis.fit.hypotheses import hypothesis_of
+from frictioncli.diagnosis.fit.left_by_base import left_by
 from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 from frictioncli.diagnosis.search import detectable_size as detectable
@@ -166,6 +167,34 @@ def test_no_size_is_claimed_where_the_base_leaves_no_more_than_a_form_misses(mon
     monkeypatch.setattr(module, "_FORM", 0.0)
     monkeypatch.setattr(detectable, "_LEAST_LEFT", 0.0)
     assert size_of(step, effect) > 10 * MARGIN
+
+
+def test_what_a_form_misses_refuses_a_name_only_above_the_margin(monkeypatch):
+    """A tenth of a ripple that is named from the margin on is below it; as much again is not."""
+    step, ripple = step_of(problem(0)), BY_NAME["position_ripple"]
+    claimed = size_of(step, ripple)
+    # all that is missed is beyond doubt, and counts however small it is beside the effect
+    monkeypatch.setattr(detectable, "_STRUCTURE", 0.0)
+    monkeypatch.setattr(detectable, "MOST_LEFT", 0.0)
+    assert size_of(step, ripple) == claimed
+    monkeypatch.setattr(module, "_FORM", 1.0)
+    assert size_of(step, ripple) is None
+
+
+def test_what_is_missed_beside_an_effect_is_what_least_squares_leave():
+    """A torque with an eighth of another ripple: no coefficients of its own explain that."""
+    step, ripple = step_of(problem(0)), BY_NAME["position_ripple"]
+    one, other = (torques_of(step.problem, ripple, 2)[number] for number in (0, 1))
+    exact = [
+        Basis(*(columns @ this.coefficients[:, np.newaxis] for columns in this.columns))
+        for this in (one, other)
+    ]
+    mixed = replace(one, torque=Basis(*(a + b / 8 for a, b in zip(*exact, strict=True))))
+    columns = np.hstack([np.vstack(one.columns), np.vstack(exact[1])])
+    left = left_by(step.precomputed.span, Basis(*np.split(columns, 2)))
+    last = np.linalg.qr(left)[1][-1, -1]
+    expected = abs(last) / 8 / np.sqrt(len(step.problem.rows))
+    assert detectable._shares_missed(step, [mixed])[0] == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.long

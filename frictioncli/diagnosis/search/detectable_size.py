@@ -15,7 +15,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
-from frictioncli.diagnosis.fit.left_by_base import Z95, left_by
+from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of
 from frictioncli.diagnosis.noise.significance import statistic_of
 from frictioncli.diagnosis.search.cause import CONVINCING
 from frictioncli.diagnosis.search.effect_size import left_shares, left_size, remember_left
@@ -23,12 +23,13 @@ from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, whole_torque
 from frictioncli.diagnosis.search.planted_fits import SHARED, PlantedFit, PlantedFits
 from frictioncli.diagnosis.search.planted_rivals import PlantedRivals, RivalsOfTorques
-from frictioncli.diagnosis.search.planted_torque import planted_torques
+from frictioncli.diagnosis.search.planted_torque import PlantedTorque, planted_torques
 from frictioncli.diagnosis.search.possible import beyond, standard_errors
 from frictioncli.diagnosis.search.rivals import evidence_missed
 from frictioncli.diagnosis.search.standing import level_of
+from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.understood import MOST_LEFT, is_part
-from frictioncli.effects.base import Basis, Effect
+from frictioncli.effects.base import Effect
 
 POWER = 0.8
 """Share of the shapes that are named at the smallest detectable size."""
@@ -137,7 +138,8 @@ def detectable_size(
     shapes, columns = [one.shape for one in told], [one.columns for one in told]
     remember_left(step.precomputed, effect, shapes, columns)
     fits = PlantedFits.of(step, told)
-    judge = _Judge(fits, rules, rivals, threshold, margin, ceil(POWER * len(torques)))
+    wanted, missed = ceil(POWER * len(torques)), _shares_missed(step, told)
+    judge = _Judge(fits, rules, rivals, threshold, margin, wanted, missed)
     size = _settled_size(judge, most)
     return size if np.isfinite(size) else None
 
@@ -197,6 +199,21 @@ def _least(
     return size
 
 
+def _shares_missed(step: Step, torques: Sequence[PlantedTorque]) -> Array:
+    """Return the RMS of what no coefficients of an effect explain of its torques, at a size of 1.
+
+    Base and other causes take their part of it.
+    """
+    problem = step.problem
+    others = [problem.basis(one.effect, one.shape) for one in step.accepted]
+    span = span_of(problem, [*step.precomputed.measurement, *others])
+    rests = []
+    for one in torques:
+        columns, torque = left_by(span, one.columns), left_by(span, one.torque)
+        rests.append(torque - columns @ np.linalg.lstsq(columns, torque)[0])
+    return np.asarray(np.sqrt(np.sum(np.square(np.hstack(rests)), axis=0) / len(problem.rows)))
+
+
 @dataclass(frozen=True, slots=True)
 class _Judge:
     """What a planted effect needs for its name, and the number of shapes that must have it."""
@@ -207,6 +224,7 @@ class _Judge:
     threshold: float
     margin: float
     wanted: int
+    shares_missed: Array
     _of_torques: dict[int, RivalsOfTorques] = field(default_factory=dict)
 
     def counting(self, least: Sequence[float]) -> int:
@@ -230,7 +248,9 @@ class _Judge:
         structure = self.rules.structure
         if structure is not None and is_part(fit.effect, left, structure):
             return True
-        return planted.missed > _STRUCTURE and self._missed(planted) > MOST_LEFT * left
+        missed = planted.size * self.shares_missed[planted.number]
+        # what is not above the margin is no structure
+        return planted.missed > _STRUCTURE and missed > max(MOST_LEFT * left, self.margin)
 
     def rivalled(self, planted: PlantedFit) -> bool:
         """Return whether a rival that has no name, or a name of its own, takes an effect."""
@@ -249,12 +269,3 @@ class _Judge:
             in_set = own + evidence_missed(fit.statistic, 0.0) > factor - _IN_SET
             return fit.effect.name in rules.unnamed or not in_set
         return False
-
-    def _missed(self, planted: PlantedFit) -> float:
-        """Return the RMS that the base leaves of what a fit misses of a torque."""
-        torque = self.fits.torques[planted.number]
-        coefficients = planted.fit.coefficients[:, np.newaxis]
-        both = zip(torque.torque, torque.columns, strict=True)
-        rest = Basis(*(planted.size * one - own @ coefficients for one, own in both))
-        left = left_by(self.fits.step.precomputed.span, rest)
-        return float(np.sqrt(np.sum(np.square(left)) / (len(left) / 2)))
