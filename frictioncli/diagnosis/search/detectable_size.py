@@ -18,7 +18,12 @@ from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of
 from frictioncli.diagnosis.noise.significance import statistic_of
 from frictioncli.diagnosis.search.cause import CONVINCING
-from frictioncli.diagnosis.search.effect_size import left_shares, left_size, remember_left
+from frictioncli.diagnosis.search.effect_size import (
+    left_shares,
+    left_size,
+    remember_left,
+    shown_of,
+)
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, whole_torque
 from frictioncli.diagnosis.search.planted_fits import SHARED, PlantedFit, PlantedFits
@@ -202,14 +207,17 @@ def _least(
 def _shares_missed(step: Step, torques: Sequence[PlantedTorque]) -> Array:
     """Return the RMS of what no coefficients of an effect explain of its torques, at a size of 1.
 
-    Base and other causes take their part of it.
+    Base and other causes take their part of it. It counts in the channels in which sizes do.
     """
     problem = step.problem
     others = [problem.basis(one.effect, one.shape) for one in step.accepted]
     span = span_of(problem, [*step.precomputed.measurement, *others])
     rests = []
     for one in torques:
-        columns, torque = left_by(span, one.columns), left_by(span, one.torque)
+        columns, torque = (
+            shown_of(problem, one.effect, left_by(span, basis))
+            for basis in (one.columns, one.torque)
+        )
         rests.append(torque - columns @ np.linalg.lstsq(columns, torque)[0])
     return np.asarray(np.sqrt(np.sum(np.square(np.hstack(rests)), axis=0) / len(problem.rows)))
 
