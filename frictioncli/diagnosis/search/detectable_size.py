@@ -209,9 +209,7 @@ def _shares_missed(step: Step, torques: Sequence[PlantedTorque]) -> Array:
 
     Base and other causes take their part of it. It counts in the channels in which sizes do.
     """
-    problem = step.problem
-    others = [problem.basis(one.effect, one.shape) for one in step.accepted]
-    span = span_of(problem, [*step.precomputed.measurement, *others])
+    problem, span = step.problem, step.once(_span, lambda: _span(step))
     rests = []
     for one in torques:
         columns, torque = (
@@ -220,6 +218,12 @@ def _shares_missed(step: Step, torques: Sequence[PlantedTorque]) -> Array:
         )
         rests.append(torque - columns @ np.linalg.lstsq(columns, torque)[0])
     return np.asarray(np.sqrt(np.sum(np.square(np.hstack(rests)), axis=0) / len(problem.rows)))
+
+
+def _span(step: Step) -> Array:
+    """Return an orthonormal basis of base, measurement and other causes."""
+    others = [step.problem.basis(one.effect, one.shape) for one in step.accepted]
+    return span_of(step.problem, [*step.precomputed.measurement, *others])
 
 
 @dataclass(frozen=True, slots=True)
