@@ -194,7 +194,7 @@ def test_what_is_missed_beside_an_effect_is_what_least_squares_leave():
     left = left_by(step.precomputed.span, Basis(*np.split(columns, 2)))
     last = np.linalg.qr(left)[1][-1, -1]
     expected = abs(last) / 8 / np.sqrt(len(step.problem.rows))
-    assert detectable._shares_missed(step, [mixed])[0] == pytest.approx(expected, rel=1e-6)
+    assert detectable._share_missed(step, mixed) == pytest.approx(expected, rel=1e-6)
 
 
 @pytest.mark.long

@@ -3,14 +3,15 @@ r"""Coefficients of candidates within their physical bounds, from inner products
 A candidate's coefficients *c* raise twice the log likelihood by
 :math:`2 u^\mathsf{T} c - c^\mathsf{T} S c`, with the inner products *S* of what the null hypothesis
 leaves of its columns and *u* of these with the misfit. The greatest value between the bounds is
-found by trying which coefficients lie on a bound: a candidate has few.
+found by trying which coefficients lie on a bound, until none would gain by leaving it: a candidate
+has few.
 """
 
 from itertools import product
 
 import numpy as np
 
-from frictioncli.arrays import Array, Flags
+from frictioncli.arrays import Array, Flags, Indices
 
 _RANK = 1e-9
 """Eigenvalues of the inner products at unit length below this count as zero."""
@@ -64,19 +65,32 @@ def bounded_coefficients(
         [0, *([1] if np.isfinite(low) else []), *([2] if np.isfinite(high) else [])]
         for low, high in zip(lower, upper, strict=True)
     ]
-    inner_there, right_there = inner[where], right[where]
     on_bound = np.column_stack([np.zeros_like(lower), np.nan_to_num(lower), np.nan_to_num(upper)])
+    unsolved = np.arange(len(where))
     for state in product(*states):
-        at = np.array(state)
-        fixed = np.broadcast_to(on_bound[np.arange(len(at)), at], right_there.shape)
-        tried, value = _solved(inner_there, right_there, at == 0, fixed)
+        at, there = np.array(state), where[unsolved]
+        fixed = np.broadcast_to(on_bound[np.arange(len(at)), at], right[there].shape)
+        tried, value = _solved(inner[there], right[there], at == 0, fixed)
         inside = np.all((tried >= lower - 1e-12) & (tried <= upper + 1e-12), axis=1)
-        better = inside & (value > best)
-        best[better] = value[better]
-        coefficients[where[better]] = tried[better]
-        free[where[better]] = (at == 0) & determined[where[better]]
+        better = inside & (value > best[unsolved])
+        best[unsolved[better]] = value[better]
+        coefficients[there[better]] = tried[better]
+        free[there[better]] = (at == 0) & determined[there[better]]
+        unsolved = unsolved[~(inside & _is_best(inner[there], right[there], tried, at))]
+        if not unsolved.size:
+            break
     gain[where] = best
     return coefficients, gain, free
+
+
+def _is_best(inner: Array, right: Array, tried: Array, at: Indices) -> Flags:
+    """Return where no coefficient on a bound would gain by leaving it.
+
+    The gain is concave, so that nothing else between the bounds is better then.
+    """
+    slope = right - np.einsum("gij,gj->gi", inner, tried)
+    outward = np.where(at == 1, -slope, np.where(at == 2, slope, 0.0))
+    return np.asarray(np.all(outward >= 0.0, axis=1))
 
 
 def _single(inner: Array, right: Array, lower: float, upper: float) -> tuple[Array, Array, Flags]:

@@ -143,8 +143,7 @@ def detectable_size(
     shapes, columns = [one.shape for one in told], [one.columns for one in told]
     remember_left(step.precomputed, effect, shapes, columns)
     fits = PlantedFits.of(step, told)
-    wanted, missed = ceil(POWER * len(torques)), _shares_missed(step, told)
-    judge = _Judge(fits, rules, rivals, threshold, margin, wanted, missed)
+    judge = _Judge(fits, rules, rivals, threshold, margin, ceil(POWER * len(torques)))
     size = _settled_size(judge, most)
     return size if np.isfinite(size) else None
 
@@ -204,20 +203,18 @@ def _least(
     return size
 
 
-def _shares_missed(step: Step, torques: Sequence[PlantedTorque]) -> Array:
-    """Return the RMS of what no coefficients of an effect explain of its torques, at a size of 1.
+def _share_missed(step: Step, torque: PlantedTorque) -> float:
+    """Return the RMS of what no coefficients of an effect explain of its torque, at a size of 1.
 
     Base and other causes take their part of it. It counts in the channels in which sizes do.
     """
     problem, span = step.problem, step.once(_span, lambda: _span(step))
-    rests = []
-    for one in torques:
-        columns, torque = (
-            shown_of(problem, one.effect, left_by(span, basis))
-            for basis in (one.columns, one.torque)
-        )
-        rests.append(torque - columns @ np.linalg.lstsq(columns, torque)[0])
-    return np.asarray(np.sqrt(np.sum(np.square(np.hstack(rests)), axis=0) / len(problem.rows)))
+    columns, planted = (
+        shown_of(problem, torque.effect, left_by(span, basis))
+        for basis in (torque.columns, torque.torque)
+    )
+    rest = planted - columns @ np.linalg.lstsq(columns, planted)[0]
+    return float(np.sqrt(np.sum(np.square(rest)) / len(problem.rows)))
 
 
 def _span(step: Step) -> Array:
@@ -236,8 +233,8 @@ class _Judge:
     threshold: float
     margin: float
     wanted: int
-    shares_missed: Array
     _of_torques: dict[int, RivalsOfTorques] = field(default_factory=dict)
+    _shares_missed: dict[int, float] = field(default_factory=dict)
 
     def counting(self, least: Sequence[float]) -> int:
         """Return the number of the shape up to whose least size enough are named."""
@@ -260,9 +257,9 @@ class _Judge:
         structure = self.rules.structure
         if structure is not None and is_part(fit.effect, left, structure):
             return True
-        missed = planted.size * self.shares_missed[planted.number]
         # what is not above the margin is no structure
-        return planted.missed > _STRUCTURE and missed > max(MOST_LEFT * left, self.margin)
+        least = max(MOST_LEFT * left, self.margin)
+        return planted.missed > _STRUCTURE and self._missed(planted) > least
 
     def rivalled(self, planted: PlantedFit) -> bool:
         """Return whether a rival that has no name, or a name of its own, takes an effect."""
@@ -281,3 +278,11 @@ class _Judge:
             in_set = own + evidence_missed(fit.statistic, 0.0) > factor - _IN_SET
             return fit.effect.name in rules.unnamed or not in_set
         return False
+
+    def _missed(self, planted: PlantedFit) -> float:
+        """Return the RMS of what the form of an effect misses of a torque [unit of its channel]."""
+        number = planted.number
+        if number not in self._shares_missed:
+            torque = self.fits.torques[number]
+            self._shares_missed[number] = _share_missed(self.fits.step, torque)
+        return planted.size * self._shares_missed[number]
