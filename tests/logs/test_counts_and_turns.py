@@ -121,6 +121,16 @@ def test_an_unknown_unit_of_torque_is_warned_of(name, says, tmp_path):
     assert any(f"unit '{says}' is not known" in text for text in summary.warnings)
 
 
+def test_the_unit_of_a_linear_axis_is_not_missing(tmp_path):
+    time, position, velocity, torque = back_and_forth()
+    columns = {"time [s]": time, "position [mm]": 10 * position}
+    columns |= {"velocity [mm/s]": 10 * velocity, "torque [N]": torque}
+    samples, summary = samples_of(tmp_path, columns)
+    np.testing.assert_allclose(samples["position"], 10 * position, atol=1e-4)
+    assert any("position [mm]: unit 'mm' is not known" in text for text in summary.warnings)
+    assert not any("has no unit" in text for text in summary.warnings)
+
+
 def test_joints_share_the_time_that_the_moving_one_shows(tmp_path):
     """Joint 1 stands still and cannot tell ms from s; joint 2 moves in rad and rad/s."""
     time, position, velocity, torque = back_and_forth()

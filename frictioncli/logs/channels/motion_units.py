@@ -250,7 +250,7 @@ def _remark_position(
     written = units.canonical(position.unit, names.POSITION)
     if names.POSITION in forced or written == found.position:
         return
-    if position.unit and written is None and not found.evidence:
+    if position.unit and written is None and (found.position == "deg" or not found.evidence):
         remarks.warnings.append(
             f"{position.name}: unit {position.unit!r} is not known, taken as {found.position};"
             " give another with --position-unit, or its size with [scale] position in --map"
