@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.errors import NotEnoughData, OptionError
-from frictioncli.logs.runs.discovery import natural_key
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.zero_load import temperature_of
 
@@ -132,11 +132,7 @@ def run_history_of(folders: Sequence[ComparedFolder]) -> RunHistory:
         If there is only one run.
     """
     _check_same(folders)
-    found = [
-        (folder, str(run))
-        for folder in folders
-        for run in sorted(folder.torques["run"].unique(), key=natural_key)
-    ]
+    found = [(folder, run) for folder in folders for run in runs_in_order(folder.torques)]
     if len(found) < 2:
         raise NotEnoughData(
             f"{folders[0].name}: one run only, expected two or more to compare; name the work"

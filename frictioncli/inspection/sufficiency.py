@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.diagnosis.diagnose import LEAST_PAIRS as LEAST_TO_DIAGNOSE
 from frictioncli.errors import NotEnoughData
 from frictioncli.inspection.findings import JointInspection
@@ -236,7 +237,7 @@ def _speed_limitations(pairs: pd.DataFrame) -> Iterable[str]:
 
 
 def _diagnose(pairs: pd.DataFrame, recordings: RecordingCounts) -> StageVerdict:
-    runs = sorted(pairs["run"].unique())
+    runs = runs_in_order(pairs)
     training = pairs if len(runs) == 1 else pairs[pairs["run"] != runs[-1]]
     if len(training) < LEAST_TO_DIAGNOSE:
         kept = " before the last run, which is kept for testing" if len(runs) > 1 else ""

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.model.friction import friction_torque
 from frictioncli.report.labels import TEMPERATURE_SYMBOLS, figure_text, friction_label
 from frictioncli.report.panel import stacked
@@ -40,7 +41,7 @@ def corrected_friction_figure(results: JointResults, phase: str) -> Figure:
         Heating gives Figure 9, cooling Figure 10.
     """
     schedule = results.schedule[results.schedule["phase"] == phase]
-    runs = sorted(schedule["run"].unique())[:MOST_RUNS]
+    runs = runs_in_order(schedule)[:MOST_RUNS]
     height = _FRICTION_HEIGHT + _STRIP_HEIGHT
     figure = Figure(figsize=(WIDTH, height * len(runs) + 0.4), layout="constrained")
     grid = stacked(figure, 2 * len(runs), [_FRICTION_HEIGHT, _STRIP_HEIGHT] * len(runs))

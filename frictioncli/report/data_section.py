@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 
+from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.report.page_tables import TextTable
 from frictioncli.report.quality_ratings import IngestCounts
 from frictioncli.report.results import JointResults, WorkFolderResults
@@ -140,7 +141,8 @@ def _ingest_table(files: pd.DataFrame) -> TextTable:
     columns = ("rows_read", "rows_kept", "rows_rejected")
     rows = [
         (str(run), str(len(own)), *(thousands_text(int(own[name].sum())) for name in columns))
-        for run, own in files.groupby("run")
+        for run in runs_in_order(files)
+        for own in [files[files["run"] == run]]
     ]
     return TextTable(
         title="Reading",

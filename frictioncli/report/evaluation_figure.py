@@ -6,6 +6,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.report.labels import CRITERION_WORDS, figure_text
 from frictioncli.report.panel import name_ticks
 from frictioncli.report.results import MOST_RUNS, JointResults
@@ -48,7 +49,7 @@ def error_figure(results: JointResults) -> Figure:
         One joint's results.
     """
     criterion = compared_criterion(results)
-    runs = sorted(results.evaluation["run"].unique())[:MOST_RUNS]
+    runs = runs_in_order(results.evaluation)[:MOST_RUNS]
     evaluation = results.evaluation[results.evaluation["run"].isin(runs)]
     criteria = [criterion, *_other_criterion(criterion, evaluation)]
     counts = shown_counts(_drawn_rows(results))
@@ -199,7 +200,7 @@ def counts_left_out(results: JointResults) -> list[int]:
 def _drawn_rows(results: JointResults) -> pd.DataFrame:
     """Return the rows of the evaluation whose numbers of corrections Figure 11 shows."""
     criterion = compared_criterion(results)
-    runs = sorted(results.evaluation["run"].unique())[:MOST_RUNS]
+    runs = runs_in_order(results.evaluation)[:MOST_RUNS]
     evaluation = results.evaluation[results.evaluation["run"].isin(runs)]
     criteria = [criterion, *_other_criterion(criterion, evaluation)]
     return evaluation[evaluation["criterion"].isin(criteria)]

@@ -10,6 +10,7 @@ import pandas as pd
 
 from frictioncli.arrays import Array
 from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
+from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.diagnosis.documents.apply_extension import without_effects
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.errors import NotEnoughData
@@ -92,7 +93,7 @@ def _explorer(results: JointResults) -> Explorer:
         k=tuple(sorted(float(k) for k in rows["k"].unique())),
         tmax=tuple(sorted(float(tmax) for tmax in rows["tmax"].unique())),
     )
-    runs = sorted(str(run) for run in rows["run"].unique())[:MOST_RUNS]
+    runs = runs_in_order(rows)[:MOST_RUNS]
     replays = {"base": replayed_phases(results.torques, results.model, settings, grid, runs)}
     model, extension = results.extended_model, results.extension
     without_extended = _extension_missing(extension)

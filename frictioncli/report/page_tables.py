@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.report.evaluation_figure import compared_criterion
 from frictioncli.report.labels import CRITERION_WORDS
 from frictioncli.report.results import JointResults, by_speed
@@ -70,7 +71,9 @@ def epsilon_tables(results: JointResults) -> list[TextTable]:
     )
     bounds = sorted(float(value) for value in results.evaluation.loc[bounded, "bound"].unique())
     tables = []
-    for run, own in results.evaluation[~bounded].groupby("run"):
+    fixed, others = results.evaluation[~bounded], results.evaluation[bounded | uncorrected]
+    for run in runs_in_order(fixed):
+        own = fixed[fixed["run"] == run]
         model = ", extended model" if results.evaluated_extended else ""
         title = f"{run}{model}: error ε of equation (21) [{results.unit}] (number of corrections)"
         rows: list[_Row] = [
@@ -79,7 +82,8 @@ def epsilon_tables(results: JointResults) -> list[TextTable]:
         ]
         marked = [setting == simulated for setting in settings]
         tables.append(_table(title, ("setting", "tmax [min]"), own, rows, marked))
-    for run, own in results.evaluation[bounded | uncorrected].groupby("run"):
+    for run in runs_in_order(others):
+        own = others[others["run"] == run]
         title = f"{run}: the same where the predicted uncertainty of friction decides"
         rows = [((f"{value:g}",), own[own["bound"] == value]) for value in bounds]
         marked = [value == bound for value in bounds]

@@ -13,6 +13,7 @@ from frictioncli import schemas, tables
 from frictioncli.arrays import Array
 from frictioncli.challenge_schema import CHALLENGE
 from frictioncli.design.document import PlanDocument
+from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_document import ExtendedDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
@@ -31,15 +32,7 @@ from frictioncli.report.folder_reading import (
     read_plan,
 )
 from frictioncli.report.style import PHASES, SpeedStyle, speed_styles
-from frictioncli.workfiles import (
-    DIAGNOSIS,
-    EVALUATION,
-    EXTENDED,
-    MODEL,
-    PLAN,
-    SCHEDULE,
-    TORQUES,
-)
+from frictioncli.workfiles import DIAGNOSIS, EVALUATION, EXTENDED, MODEL, PLAN, SCHEDULE, TORQUES
 
 MOST_RUNS = 3
 """Greatest number of runs drawn in a figure, to fit a page."""
@@ -124,7 +117,7 @@ class JointResults:
     @property
     def runs(self) -> list[str]:
         """Names of the joint's runs, in order."""
-        return sorted(str(run) for run in self.torques["run"].unique())
+        return runs_in_order(self.torques)
 
     @property
     def thermal_pairs(self) -> pd.DataFrame:
@@ -203,7 +196,7 @@ class WorkFolderResults:
     @property
     def runs(self) -> list[str]:
         """Names of all runs, in order."""
-        return sorted({run for joint in self.joints for run in joint.runs})
+        return runs_in_order(self.torques)
 
     @property
     def log_files(self) -> pd.DataFrame:

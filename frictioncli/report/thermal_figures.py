@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.model.paper_method import branch_means
 from frictioncli.report.labels import TEMPERATURE_LABELS, figure_text, friction_label
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed
@@ -44,7 +45,7 @@ def thermal_runs(results: JointResults, *columns: str) -> list[str]:
     """
     pairs = results.thermal_pairs
     known = pairs[pairs[list(columns)].notna().any(axis=1)]
-    return sorted(known["run"].unique())[:MOST_RUNS]
+    return runs_in_order(known)[:MOST_RUNS]
 
 
 def temperature_figure(results: JointResults) -> Figure:
@@ -172,7 +173,7 @@ def branch_means_figure(results: JointResults) -> Figure:
     """
     kind = results.model.temperature
     means = means_per_run(results)
-    runs = sorted(means["run"].unique())[:MOST_RUNS]
+    runs = runs_in_order(means)[:MOST_RUNS]
     figure, axes = panels(len(runs), height=_PANEL_HEIGHT)
     for run, panel in zip(runs, axes, strict=True):
         labels = []
