@@ -36,7 +36,7 @@ KIND_TEXT = {
     "network": "friction of a temperature that no sensor measures",
     "ordinary": "one ordinary thing and nothing else",
     "zones": "the sample joint with another effect",
-    "moved_heat": "such friction, and heat that enters at another place later",
+    "moved_heat": "friction of such a temperature and an entry of heat that moves",
 }
 
 
