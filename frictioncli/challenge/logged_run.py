@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array, Flags, Indices
+from frictioncli.diagnosis.data.run_order import runs_in_order
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,14 +47,15 @@ class LoggedRun:
 
 
 def logged_runs(samples: pd.DataFrame) -> list[LoggedRun]:
-    """Return the runs of a joint.
+    """Return the runs of a joint in order, the one that the diagnosis holds out last.
 
     Parameters
     ----------
     samples : DataFrame
         Rows of :data:`frictioncli.schemas.SAMPLES` of a single joint, numbered from 0.
     """
-    return [_logged_run(str(name), rows) for name, rows in samples.groupby("run", sort=True)]
+    by_run = samples.groupby("run", observed=True)
+    return [_logged_run(name, by_run.get_group(name)) for name in runs_in_order(samples)]
 
 
 def _logged_run(name: str, rows: pd.DataFrame) -> LoggedRun:

@@ -18,8 +18,8 @@ import pandas as pd
 
 from frictioncli.arrays import Array
 from frictioncli.comparison.noise_averaged_fit import is_estimable, noise_averaged_fit
+from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.distributions import t_quantile
-from frictioncli.logs.runs.discovery import natural_key
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.equations import COEFFICIENTS, jacobian
 from frictioncli.model.identification import freedom, pair_equations, pair_residual, point_noise
@@ -69,7 +69,7 @@ def change_of_last_run(torques: pd.DataFrame, model: FrictionModel) -> Change | 
     runs = sorted(rows["run"].unique())
     if len(runs) < 2:
         return None
-    in_order = sorted(range(len(runs)), key=lambda number: natural_key(runs[number]))
+    in_order = [runs.index(name) for name in runs_in_order(rows)]
     last = in_order[-1]
     observed = observations(rows, model.temperature)
     design = _design(observed, model)

@@ -69,6 +69,15 @@ def gained(before, after):
     return (after["torque"] - before["torque"]).to_numpy()
 
 
+def test_the_run_that_is_held_out_comes_last():
+    """Of two runs of equal length, the diagnosis learns from the first half of all the time."""
+    frame = pd.concat([log(name="day10"), log(name="day9")], ignore_index=True)
+    states = states_of(frame)
+    assert [state.run.name for state in states] == ["day9", "day10"]
+    scale = log_scale(separated(frame), states, ["day9"])
+    assert scale.seen == pytest.approx(0.5)
+
+
 @pytest.mark.parametrize("sign", [1, -1])
 def test_friction_of_speed_is_the_law_in_every_pair(sign):
     frame = log(sign=sign)
