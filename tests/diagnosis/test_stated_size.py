@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from frictioncli.diagnosis.data.build_problem import at_temperature
+from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.extension import extend
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
@@ -19,11 +21,13 @@ from frictioncli.diagnosis.search.stated_size import (
     stated_sizes,
 )
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.thermal.refine import restricted
 from frictioncli.effects import BY_NAME
 from frictioncli.model.noise import Noise
 from tests.diagnosis.dense_noise import problem
 from tests.diagnosis.test_standing import cause
 from tests.diagnosis.wave_effects import A, B, effect
+from tests.equation_16 import TRUTH, friction
 
 DATA = problem(1)
 SPAN = span_of(DATA)
@@ -139,3 +143,39 @@ def test_what_may_be_below_the_margin_does_not_blur_the_others():
     low, high = kept.visible_interval
     assert 0.2 < low < 0.4 / np.sqrt(2) < high
     assert high - low < 0.5 * np.subtract(*together[0].visible_interval[::-1])
+
+
+@pytest.mark.parametrize(
+    ("time_constant", "share", "heating"),
+    [(300.0, 1.0, 40.0), (1500.0, 0.3, 5.0), (4500.0, 1.0, 2.0), (15000.0, 1.0, 40.0)],
+)
+def test_the_size_of_a_lag_is_the_friction_that_the_base_cannot_have(time_constant, share, heating):
+    """Of equation (16) at both temperatures, and as precise as estimates of it scatter.
+
+    A gear that warms more and friction that falls less with temperature are hardly told apart.
+    """
+    lag, coefficients = BY_NAME["thermal_lag"], np.array([share, heating, 0.0, 0.0])
+    hidden = HiddenTemperature.of(time_constant, coefficients, DATA.reference_power)
+    warm = at_temperature(DATA, DATA.parameters, hidden)
+    table, load = warm.table, warm.load_base @ warm.gravity
+    there, measured = (
+        friction(TRUTH, load=table.load, speed=table.speed, temperature=one)
+        for one in (table.temperature, table.measured_temperature)
+    )
+    both = np.concatenate([there - measured, np.zeros(ROWS)])
+    true = np.sqrt(np.sum(np.square(both - SPAN @ (SPAN.T @ both))) / ROWS)
+    shape = {"time_constant": time_constant}
+    fit = EffectFit(restricted([0, 1]), shape, coefficients, np.eye(4), 99.0)
+    found = replace(cause(), fit=fit, effects=(lag.name,))
+    generator, sizes, halves = np.random.default_rng(5), [], []
+    for _ in range(25):
+        own, its_load = np.split(noise(generator), 2)
+        joint = replace(warm, friction=there + own, load=load + its_load)
+        extension = extend(joint, fit_of(None), [fit])
+        (one,) = stated_sizes([found], extension, joint, fit_of(None), SPAN)
+        low, high = one.visible_interval
+        assert low < true < high
+        sizes.append(one.visible)
+        halves.append(np.sqrt(((high - low) / 2) ** 2 - (1.96 * 0.05 * one.visible) ** 2))
+    assert np.mean(sizes) == pytest.approx(true, rel=0.01)
+    assert np.mean(halves) / 1.96 == pytest.approx(np.std(sizes), rel=0.35)

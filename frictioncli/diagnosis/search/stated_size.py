@@ -24,7 +24,8 @@ from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.measurement import CLEAR, beside_the_rest
 from frictioncli.diagnosis.search.slow_sensor import behind_sensor
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.effects.base import Basis
+from frictioncli.effects.base import Basis, friction_only
+from frictioncli.effects.thermal_lag import EFFECT as LAG
 
 
 def span_at_measured(base: Problem, measurement: Sequence[Cause]) -> Array:
@@ -159,7 +160,10 @@ def stated_sizes(
 ) -> tuple[Cause, ...]:
     """Return named causes with the sizes that the extended model gives them.
 
-    Effects of the measurement keep theirs.
+    Effects of the measurement keep theirs. The size of a lag of the gear is what the base at the
+    measured temperature leaves of the friction at the hidden one, with all that its parameters add:
+    a gear that warms more and friction that falls less with temperature compensate each other, so
+    that the size is known though neither is.
 
     Parameters
     ----------
@@ -181,26 +185,42 @@ def stated_sizes(
         if cause.fit.effect.measurement:
             found.append(cause)
             continue
+        one = extension.effects[number]
         own = np.r_[extension.place(number), extension.shape_place(number)]
+        # to first order a change of the shape is a change of torque, and adds to no size by itself
+        coefficients = np.append(one.coefficients, np.zeros(len(one.effect.shape)))
+        if one.effect.name == LAG.name:
+            own = np.r_[np.arange(len(extension.names)), own]
+            coefficients = np.append(extension.changes, coefficients)
         columns = Basis(friction[:, own], load[:, own])
-        among = covariance[np.ix_(own, own)]
-        found.append(_stated(cause, extension, number, problem, (span, columns, among)))
+        fitted = columns, coefficients, covariance[np.ix_(own, own)]
+        if one.effect.name == LAG.name:
+            fitted = _with_simulated(problem, *fitted)
+        found.append(_stated(cause, one, problem, span, fitted))
     return tuple(found)
+
+
+def _with_simulated(
+    problem: Problem, columns: Basis, coefficients: Array, covariance: Array
+) -> tuple[Basis, Array, Array]:
+    """Return columns, coefficients and their covariance with the simulated friction before them.
+
+    At the measured temperature the base leaves nothing of it.
+    """
+    simulated = friction_only(problem.friction - problem.friction_misfit)
+    before = (np.column_stack(one) for one in zip(simulated, columns, strict=True))
+    return Basis(*before), np.append(1.0, coefficients), np.pad(covariance, ((1, 0), (1, 0)))
 
 
 def _stated(
     cause: Cause,
-    extension: Extension,
-    number: int,
+    one: EffectFit,
     problem: Problem,
-    fitted: tuple[Array, Basis, Array],
+    span: Array,
+    fitted: tuple[Basis, Array, Array],
 ) -> Cause:
-    """Return a cause with its sizes, from the span, its columns and the covariance of these."""
-    span, columns, covariance = fitted
-    one = extension.effects[number]
-    shapes = np.zeros(len(one.effect.shape))
-    # to first order a change of the shape is a change of torque, and adds to no size by itself
-    coefficients = np.concatenate([one.coefficients, shapes])
+    """Return a cause with its sizes, from its columns, their coefficients and the covariance."""
+    columns, coefficients, covariance = fitted
 
     def size_of(both: Array) -> tuple[float, tuple[float, float]]:
         shown = shown_of(problem, one.effect, both)
