@@ -222,7 +222,7 @@ def diagnose_joint(
         predicted = predicting(modelled, causes)
         appeared = changes_on_new_run(
             NewRunMisfit.of(problem, new, predicted, weighted_fit, step.noise()),
-            [one for one in effects if one not in [cause.fit.effect for cause in causes]],
+            [one for one in effects if one.name not in {cause.fit.effect.name for cause in causes}],
             floor=floor,
             margin=margin,
         )

@@ -216,3 +216,19 @@ def test_the_claimed_size_is_named_and_half_of_it_is_not(name):
             named[factor] += any(one.standing == "named" and name in one.effects for one in judged)
     assert named[1.5] >= 5
     assert named[0.4] <= 1
+
+
+def test_the_size_of_what_is_named_is_that_without_it_however_its_entry_was_changed():
+    """A lag of the gear whose network was found has columns for its parts only: another entry."""
+    effect, settings = BY_NAME["direction_asymmetry"], DiagnosisSettings()
+    data = problem(0)
+    data = planted(data, torques_of(data, effect, 1)[0].torque, 1.0)
+    found = find_causes(data, [effect], settings, MARGIN)
+    (cause,) = found.causes
+    other = replace(cause, fit=replace(cause.fit, effect=replace(effect, summary="other")))
+    sizes = [
+        one.detectable_sizes([effect], settings.alpha, MARGIN)
+        for one in (found, replace(found, causes=(other,)))
+    ]
+    assert MARGIN < sizes[0]["direction_asymmetry"] < 1.0
+    assert sizes[1] == sizes[0]

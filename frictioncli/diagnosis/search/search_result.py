@@ -110,13 +110,13 @@ class SearchResult:
             Significance level of the whole search.
         """
         return any(
-            one.fit.effect is effect and one.test.p_value >= level_of(effect, alpha)
+            one.fit.effect.name == effect.name and one.test.p_value >= level_of(effect, alpha)
             for one in self.causes
         )
 
     def _without(self, cause: Cause) -> Step:
         """Return base and all other causes, as if a cause were not in the data."""
-        others = [one for one in self.step.accepted if one.effect is not cause.fit.effect]
+        others = [one for one in self.step.accepted if one.effect.name != cause.fit.effect.name]
         step, fit = Step.of(self.step.precomputed, others), cause.fit
         return step.planted(step.problem.basis(fit.effect, fit.shape), -fit.coefficients)
 
