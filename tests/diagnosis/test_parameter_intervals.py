@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.documents.parameters import fitted_parameters
+from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.fit.extension import beside_unfitted, extend
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.precomputed import Precomputed
@@ -90,6 +92,19 @@ def test_a_delay_that_is_not_named_is_an_error_of_what_it_moves(joint, weighted_
 
 
 @pytest.mark.long
+def test_intervals_of_an_effect_without_a_name_end_at_its_physical_bounds(joint):
+    values, errors = np.array([0.1, 60.0, -0.4, 0.5]), np.array([0.2, 15.0, 0.1, 0.1])
+    effect, shape = BY_NAME["thermal_lag"], {"time_constant": 600.0}
+    fit = EffectFit(effect, shape, values, np.diag(np.square(errors)), 20.0)
+    stated = fitted_parameters(fit, joint, TorqueUnits("N·m", "N·m"))
+    intervals = {name: one.ci95 for name, one in stated.items()}
+    assert intervals["lag_share"] == pytest.approx((0.0, 0.1 + Z95 * 0.2))
+    assert intervals["friction_heating"] == pytest.approx((60.0 - Z95 * 15.0, 60.0))
+    # what is impossible is said as it was fitted
+    assert intervals["housing_share"] == pytest.approx((-0.4 - Z95 * 0.1, -0.4 + Z95 * 0.1))
+    assert intervals["housing_lag_share"] == pytest.approx((0.5 - Z95 * 0.1, 0.5 + Z95 * 0.1))
+
+
 def test_joints_with_nothing_hidden_under_all_nuisances():
     """Ten joints: of 50 intervals of the base 92 % hold the truth; one name at the most."""
     held, offset, named = [], [], []

@@ -194,7 +194,8 @@ def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecor
 
 def _visible_record(diagnosis: Diagnosis, cause: Cause) -> CauseRecord:
     """Return a cause that is not named; its parameters are those of its own fit."""
-    parameters = fitted_parameters(cause.fit, TorqueUnits.of_diagnosis(diagnosis))
+    units = TorqueUnits.of_diagnosis(diagnosis)
+    parameters = fitted_parameters(cause.fit, diagnosis.base, units)
     return _record(diagnosis, cause, parameters, None)
 
 

@@ -6,10 +6,11 @@ from string import Formatter
 import numpy as np
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.documents.extended_document import ParameterRecord
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.fit.extension import Extension
-from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
 from frictioncli.effects.base import Effect
 from frictioncli.wording import quantity_text
 
@@ -20,19 +21,29 @@ Z95 = 1.96
 _NO_SIZE = "These data determine the torque that it adds, but not its parameters."
 
 
-def fitted_parameters(fit: EffectFit, units: TorqueUnits) -> dict[str, ParameterRecord]:
+def fitted_parameters(
+    fit: EffectFit, problem: Problem, units: TorqueUnits
+) -> dict[str, ParameterRecord]:
     """Return the parameters of an effect by its own fit, the shape without intervals.
+
+    Intervals end at the physical bounds; that of an estimate beyond these says by how much.
 
     Parameters
     ----------
     fit : EffectFit
         The effect, fitted beside the causes.
+    problem : Problem
+        The joint's rows.
     units : TorqueUnits
         Units of torque.
     """
+    values = fit.coefficients
     reach = Z95 * np.sqrt(np.maximum(np.diag(np.atleast_2d(fit.covariance)), 0.0))
-    interval = fit.coefficients - reach, fit.coefficients + reach
-    return _shape(fit) | _coefficients(fit, interval, units)
+    lower, upper = physical_bounds(fit.effect, problem)
+    possible = (values >= lower) & (values <= upper)
+    low = np.where(possible, np.maximum(values - reach, lower), values - reach)
+    high = np.where(possible, np.minimum(values + reach, upper), values + reach)
+    return _shape(fit) | _coefficients(fit, (low, high), units)
 
 
 def extension_parameters(
