@@ -22,8 +22,9 @@ from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.distributions import t_quantile
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.equations import COEFFICIENTS, jacobian
-from frictioncli.model.identification import freedom, pair_equations, pair_residual, point_noise
+from frictioncli.model.identification import freedom, pair_equations, pair_residual
 from frictioncli.model.late_torque import without_delay
+from frictioncli.model.load_contrast import point_noise
 from frictioncli.model.noise import plausible_noise
 from frictioncli.model.observations import Observations, observations
 from frictioncli.model.zero_load import temperature_of

@@ -7,7 +7,9 @@ estimates accounts for the noise that pairs share and for slow drift
 .. math:: (X^\mathsf{T} X)^{+} X^\mathsf{T} C X (X^\mathsf{T} X)^{+}
 
 with the weighted derivatives *X* and the covariance *C* of the weighted noise, so that the
-confidence intervals hold when the experiment is repeated.
+confidence intervals hold when the experiment is repeated. With several runs that is on other days:
+*C* then holds by how much the coefficients differ between runs
+(:mod:`frictioncli.model.run_differences`).
 """
 
 from dataclasses import dataclass, replace
@@ -18,8 +20,16 @@ from frictioncli.arrays import Array
 from frictioncli.distributions import t_quantile
 from frictioncli.model.equations import Equations, jacobian
 from frictioncli.model.friction import FrictionParameters, friction_torque
-from frictioncli.model.noise import Noise, pair_covariance, plausible_noise
+from frictioncli.model.load_contrast import (
+    contrast_by_run,
+    contrast_inflation,
+    load_coefficient,
+    load_difference,
+    point_noise,
+)
+from frictioncli.model.noise import Noise, pair_covariance
 from frictioncli.model.observations import Observations
+from frictioncli.model.run_differences import FIRST_SHARE, noise_and_differences, run_starts
 from frictioncli.model.variable_projection import minimise
 
 _ROUNDS = 2
@@ -85,22 +95,14 @@ def fit_terms(observed: Observations, terms: tuple[str, ...]) -> Estimate:
         Those of :data:`frictioncli.model.equations.COEFFICIENTS` to fit.
     """
     names = (*terms, "delta") if "gamma" in terms else terms
-    noise = _first_noise(observed, terms)
+    noise, shares = _first_noise(observed, terms), np.full(len(terms), FIRST_SHARE)
     for _ in range(_ROUNDS):
         equations = weighted_equations(observed, noise)
         parameters = minimise(equations, terms)
         residual = pair_residual(observed, parameters)
-        unweighted = jacobian(pair_equations(observed), terms, parameters)
-        plausible = plausible_noise(
-            residual=residual,
-            design=unweighted,
-            time=observed.time,
-            run=observed.run,
-            bins=observed.bins,
-            point=point_noise(observed, parameters.alpha),
-        )
+        plausible, shares = noise_of_pairs(observed, terms, parameters, shares)
         noise = plausible[0][0]
-    covariance = _covariance(observed, terms, parameters, plausible)
+    covariance = _covariance(observed, terms, parameters, plausible, shares)
     within = observed.friction_within - parameters.alpha * observed.squared_load_within
     rows = len(within)
     squares = np.sum(observed.bins * np.square(residual)) + within @ within
@@ -143,6 +145,49 @@ def with_error_of(
     size = np.where(size > 0, size, 1.0)
     change = error * (np.linalg.lstsq(weighted / size, moved, rcond=1e-10)[0] / size)
     return replace(estimate, covariance=estimate.covariance + np.outer(change, change))
+
+
+def noise_of_pairs(
+    observed: Observations, terms: tuple[str, ...], parameters: FrictionParameters, shares: Array
+) -> tuple[list[tuple[Noise, float]], Array]:
+    """Return noises of the pairs, and by how much coefficients differ between runs.
+
+    Parameters
+    ----------
+    observed : Observations
+        Friction of one joint.
+    terms : tuple of str
+        Coefficients that were fitted.
+    parameters : FrictionParameters
+        The fit.
+    shares : ndarray, shape (terms,)
+        By how much they are assumed to differ while the noise is found. [-]
+
+    Returns
+    -------
+    noises : list of (Noise, float)
+        Noises with their probabilities, the most probable first.
+    shares : ndarray, shape (terms,)
+        Root mean squares of the standard deviations between runs, as shares of the coefficients.
+    """
+    equations = pair_equations(observed)
+    design = jacobian(equations, terms, parameters)
+    coefficients = np.array([getattr(parameters, term) for term in terms])
+    # the load is nearly the same in all pairs: only within them does it tell alpha
+    told = np.array([term != "alpha" for term in terms])
+    found = np.zeros(len(terms))
+    noises, found[told] = noise_and_differences(
+        (design[:, : len(terms)] * coefficients).T[told],
+        shares[told],
+        residual=pair_residual(observed, parameters),
+        design=design,
+        time=observed.time,
+        run=observed.run,
+        bins=observed.bins,
+        point=point_noise(observed, parameters.alpha),
+    )
+    found[~told] = load_difference(observed, parameters.alpha)
+    return noises, found
 
 
 def pair_residual(observed: Observations, parameters: FrictionParameters) -> Array:
@@ -201,33 +246,6 @@ def _finite(temperature: Array) -> Array:
     return np.nan_to_num(temperature, nan=0.0)
 
 
-def load_coefficient(observed: Observations) -> float:
-    """Return alpha of equation (10) from within the pairs alone; 0 where load does not vary.
-
-    Parameters
-    ----------
-    observed : Observations
-        Friction of one joint.
-
-    Returns
-    -------
-    float
-        Load coefficient. [1/(N·m)]
-    """
-    if observed.load_contrast <= 0:
-        return 0.0
-    slope = observed.squared_load_within @ observed.friction_within / observed.load_contrast
-    return max(float(slope), 0.0)
-
-
-def point_noise(observed: Observations, alpha: float) -> float:
-    """Return the standard deviation of one angle bin about its pair [N·m]."""
-    within = observed.friction_within - alpha * observed.squared_load_within
-    freedom = max(len(within) - len(observed.friction) - 1, 1)
-    floor = 1e-6 * max(float(np.mean(np.abs(observed.friction))), 1e-12)
-    return max(float(np.sqrt(within @ within / freedom)), floor)
-
-
 def _first_noise(observed: Observations, terms: tuple[str, ...]) -> Noise:
     point = point_noise(observed, load_coefficient(observed) if "alpha" in terms else 0.0)
     return Noise(point=point, pair=point, drift=point, drift_time=3600.0)
@@ -238,6 +256,7 @@ def _covariance(
     terms: tuple[str, ...],
     parameters: FrictionParameters,
     plausible: list[tuple[Noise, float]],
+    shares: Array,
 ) -> Array:
     """Return the covariance of the weighted estimates, averaged over the plausible noises."""
     noise = plausible[0][0]
@@ -250,41 +269,18 @@ def _covariance(
     for possible, weight in plausible:
         truth = pair_covariance(possible, time=observed.time, run=observed.run, bins=observed.bins)
         meat += weight * (scaled.T @ truth.times(scaled))
+    starts = run_starts(observed.run)
+    of_load = contrast_by_run(observed) / max(observed.load_contrast, 1e-300)
+    for number, (term, share) in enumerate(zip(terms, shares.tolist(), strict=True)):
+        # what a coefficient of another size in a run does to the sums of the fit
+        spread = share * getattr(parameters, term)
+        moved = np.add.reduceat(weighted[:-1, number, np.newaxis] * between, starts)
+        moved += np.outer(of_load * weighted[-1, number], within)
+        meat += spread**2 * moved.T @ moved
     bread = np.linalg.pinv(between.T @ between + np.outer(within, within))
     scale = np.outer(size, size)
     # the column of delta is zero where gamma is
     return np.divide(bread @ meat @ bread, scale, out=np.full_like(scale, np.nan), where=scale > 0)
-
-
-def contrast_inflation(observed: Observations, alpha: float, point: float) -> float:
-    """Return the factor by which the variance of alpha exceeds that of independent bins.
-
-    Residuals shared by neighbouring bins of a pair, or by all pairs at an angle, make alpha less
-    certain. The factor is the greater one of the cluster-robust variances, by pair and by angle,
-    over the variance of independent bins.
-
-    Parameters
-    ----------
-    observed : Observations
-        Friction of one joint.
-    alpha : float
-        Load coefficient. [1/(N·m)]
-    point : float
-        Standard deviation of one angle bin about its pair. [N·m]
-
-    Returns
-    -------
-    float
-        The factor, 1 or more. [-]
-    """
-    if observed.load_contrast <= 0:
-        return 1.0
-    residual = observed.friction_within - alpha * observed.squared_load_within
-    score = observed.squared_load_within * residual
-    independent = point**2 * observed.load_contrast
-    clusters = (observed.row_pair, np.unique(observed.row_position, return_inverse=True)[1])
-    clustered = [float(np.sum(np.square(np.bincount(cluster, score)))) for cluster in clusters]
-    return max(1.0, *(value / independent for value in clustered))
 
 
 def freedom(observed: Observations, noise: Noise, parameters: int) -> float:

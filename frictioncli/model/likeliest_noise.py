@@ -10,7 +10,8 @@ Its derivatives by the logarithms of the two standard deviations, with
 :math:`V_i = \partial V / \partial \ln \sigma_i`, are
 :math:`\tfrac12 (\operatorname{tr} P V_i - y^\mathsf{T} P V_i P y)`; for the second ones stands
 the average information [2]_, :math:`\tfrac12 y^\mathsf{T} P V_i P V_j P y`. The correlation times
-do not know of each other: their pairs stand one below the other in one tridiagonal system.
+do not know of each other: their pairs stand one below the other in one tridiagonal system. What all
+pairs of a run share adds :math:`Z Z^\mathsf{T}` to *V*, by Woodbury's identity in each run.
 
 References
 ----------
@@ -75,6 +76,10 @@ class NoiseLikelihood:
         Precision of the drifts of variance 1.
     log_determinants : ndarray, shape (times,)
         Of their covariances.
+    run : ndarray of int, shape (pairs,)
+        Run of each pair, from 0; pairs of a run stand together.
+    shared : ndarray, shape (components, pairs)
+        Standard deviations of what all pairs of a run share, each component on its own. [N·m]
     """
 
     columns: Array
@@ -82,9 +87,18 @@ class NoiseLikelihood:
     diagonal: Array
     beside: Array
     log_determinants: Array
+    run: Indices
+    shared: Array
 
     @classmethod
-    def of(cls, columns: Array, known: Array, drifts: Sequence[Drift]) -> "NoiseLikelihood":
+    def of(
+        cls,
+        columns: Array,
+        known: Array,
+        drifts: Sequence[Drift],
+        run: Indices,
+        shared: Array,
+    ) -> "NoiseLikelihood":
         """Return the likelihood of drifts.
 
         Parameters
@@ -95,6 +109,10 @@ class NoiseLikelihood:
             Variance that is independent between pairs, without the noise of pairs. [(N·m)²]
         drifts : sequence of Drift
             The drifts.
+        run : ndarray of int, shape (pairs,)
+            Run of each pair; pairs of a run stand together.
+        shared : ndarray, shape (components, pairs)
+            Standard deviations of what all pairs of a run share. [N·m]
         """
         return cls(
             columns,
@@ -102,6 +120,8 @@ class NoiseLikelihood:
             np.array([one.diagonal for one in drifts]),
             np.array([one.beside for one in drifts]),
             np.array([one.log_determinant for one in drifts]),
+            np.cumsum(np.diff(run, prepend=run[0]) != 0),
+            shared,
         )
 
     def costs(self, logs: Array, times: Indices) -> Costs:
@@ -124,11 +144,21 @@ class NoiseLikelihood:
             white.ravel(),
         )
 
+        def solve_within(columns: Array) -> Array:
+            """Return the inverse covariances without what runs share times columns."""
+            right = np.broadcast_to(columns, (len(columns), *white.shape))
+            flat = right.reshape(len(columns), white.size)
+            return solved(factor, white.ravel(), flat.T).T.reshape(right.shape)
+
+        alone = solve_within(self.shared[:, np.newaxis])
+        products = np.moveaxis(self._by_run(alone), 0, 3)
+        together = np.linalg.inv(np.eye(len(alone)) + products)
+        spread = np.einsum("tpij,jtp->itp", together[:, self.run], alone)
+
         def solve(columns: Array) -> Array:
             """Return the inverse covariances times columns, shape (columns, times, pairs)."""
-            right = np.broadcast_to(columns, (len(columns), *white.shape))
-            flat = right.reshape(len(columns), -1)
-            return solved(factor, white.ravel(), flat.T).T.reshape(right.shape)
+            inner = solve_within(columns)
+            return inner - np.einsum("itp,ctpi->ctp", spread, self._by_run(inner)[:, :, self.run])
 
         design, residual = self.columns[:, :-1].T, self.columns[:, -1]
         inner = solve(self.columns.T[:, np.newaxis])
@@ -142,15 +172,23 @@ class NoiseLikelihood:
             + self.log_determinants[times]
             + len(residual) * np.log(variance[:, 0])
             - np.linalg.slogdet(inverse)[1]
+            - np.sum(np.linalg.slogdet(together)[1], axis=1)
         )
         left = inner[-1] - (coefficients[:, np.newaxis] @ across)[:, 0]
         taken = np.sum((inverse @ across) * across, axis=1)
         diagonal = inverse_diagonal(factor, white.ravel()).reshape(white.shape) - taken
-        # the drift's share of the covariance is what is not white
+        diagonal -= np.sum(spread * alone, axis=0)
+        # the drift's share of the covariance is what is neither white nor shared by runs
+        common = self._by_run(left)
         slow = residual - coefficients @ design - white * left
+        slow -= np.einsum("tpi,ip->tp", common[:, self.run], self.shared)
         by_pair = pair * (np.sum(diagonal, axis=1) - np.sum(np.square(left), axis=1))
         by_drift = len(residual) - len(design) - np.sum(diagonal * white + residual * left, axis=1)
-        by_drift += np.sum(white * np.square(left), axis=1)
+        by_drift += np.sum(white * np.square(left), axis=1) + np.sum(np.square(common), axis=(1, 2))
+        # the trace of P Z Z'
+        by_drift -= np.sum(len(alone) - np.trace(together, axis1=2, axis2=3), axis=1)
+        shares = self._by_run(across.swapaxes(0, 1)).transpose(1, 2, 3, 0)
+        by_drift += np.sum((shares @ inverse[:, np.newaxis]) * shares, axis=(1, 2, 3))
         # q_i = V_i P y / 2
         halves = np.array([pair[:, np.newaxis] * left, slow])
         halves[1, drift < mean], by_drift = 0.0, np.where(drift < mean, 0.0, by_drift)
@@ -160,6 +198,12 @@ class NoiseLikelihood:
         return Costs(
             (determinant + quadratic) / 2, np.column_stack([by_pair, by_drift]), 2 * curvature
         )
+
+    def _by_run(self, columns: Array) -> Array:
+        """Return the products of what runs share with columns, shape (..., runs, components)."""
+        starts = np.flatnonzero(np.diff(self.run, prepend=-1))
+        products = columns[..., np.newaxis, :] * self.shared
+        return np.add.reduceat(products, starts, axis=-1).swapaxes(-1, -2)
 
 
 def likeliest(

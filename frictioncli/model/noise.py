@@ -186,6 +186,19 @@ def restricted_log_likelihood(covariance: PairCovariance, residual: Array, desig
     return float(-0.5 * (covariance.log_determinant + determinant + quadratic))
 
 
+def orthonormal_basis(design: Array) -> Array:
+    """Return an orthonormal basis of columns that may be collinear and differ widely in unit.
+
+    Parameters
+    ----------
+    design : ndarray, shape (pairs, parameters)
+        The columns.
+    """
+    length = np.linalg.norm(design, axis=0)
+    basis, size, _ = np.linalg.svd(design / np.where(length > 0, length, 1.0), full_matrices=False)
+    return np.asarray(basis[:, size > 1e-9 * size[0]])
+
+
 def plausible_noise(
     *,
     residual: Array,
@@ -195,6 +208,7 @@ def plausible_noise(
     bins: Array,
     point: float,
     extra: Array | float = 0.0,
+    shared: Array | None = None,
 ) -> list[tuple[Noise, float]]:
     """Return noise models with their posterior probabilities, the most probable first.
 
@@ -218,16 +232,15 @@ def plausible_noise(
         Standard deviation of an angle bin, known from within the pairs. [N·m]
     extra : ndarray, shape (pairs,), optional
         Further variance of the pair means that is known beforehand. [(N·m)²]
+    shared : ndarray, shape (components, pairs), optional
+        Standard deviations of what all pairs of a run share, each component on its own. [N·m]
 
     Returns
     -------
     list of (Noise, float)
         The weights sum to 1.
     """
-    # an orthonormal basis, since columns may be collinear and their units differ widely
-    length = np.linalg.norm(design, axis=0)
-    basis, size, _ = np.linalg.svd(design / np.where(length > 0, length, 1.0), full_matrices=False)
-    columns = np.column_stack([basis[:, size > 1e-9 * size[0]], residual])
+    columns = np.column_stack([orthonormal_basis(design), residual])
     scale = max(float(np.std(residual)), 1e-9)
     gaps = np.diff(time)[np.diff(run) == 0]
     shortest = max(float(np.median(gaps)), 1e-3) if gaps.size else 1.0
@@ -237,7 +250,8 @@ def plausible_noise(
     bounds = float(np.log(scale * 1e-3)), float(np.log(scale * 10))
     durations = np.geomspace(shortest, longest, _DRIFT_TIMES).tolist()
     drifts = [Drift.of(time, run, duration) for duration in durations]
-    likelihood = NoiseLikelihood.of(columns, point**2 / bins + extra, drifts)
+    common = np.zeros((0, len(time))) if shared is None else shared
+    likelihood = NoiseLikelihood.of(columns, point**2 / bins + extra, drifts, run, common)
     logs, values = likeliest(likelihood, np.log([scale / 2, scale / 2]), bounds)
     weights = np.exp(values - values.max())
     weights /= weights.sum()

@@ -25,15 +25,20 @@ from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.identifiability import Determination
 from frictioncli.model.identification import (
     Estimate,
-    contrast_inflation,
     freedom,
-    load_coefficient,
+    noise_of_pairs,
     pair_equations,
     pair_residual,
+)
+from frictioncli.model.load_contrast import (
+    contrast_by_run,
+    contrast_inflation,
+    load_coefficient,
     point_noise,
 )
-from frictioncli.model.noise import pair_covariance, plausible_noise
+from frictioncli.model.noise import pair_covariance
 from frictioncli.model.observations import Observations
+from frictioncli.model.run_differences import FIRST_SHARE, run_starts
 from frictioncli.model.variable_projection import minimise
 from frictioncli.model.zero_load import friction_at_zero_load, temperature_of
 
@@ -154,14 +159,14 @@ def consecutive_fit(
     residual = pair_residual(observed, parameters)
     names = (*COEFFICIENTS, "delta")
     point = point_noise(observed, alpha)
-    plausible = plausible_noise(
-        residual=residual,
-        design=jacobian(pair_equations(observed), COEFFICIENTS, parameters),
-        time=observed.time,
-        run=observed.run,
-        bins=observed.bins,
-        point=point,
+    plausible, shares = noise_of_pairs(
+        observed, COEFFICIENTS, parameters, np.full(len(COEFFICIENTS), FIRST_SHARE)
     )
+    spread = shares * [getattr(parameters, term) for term in COEFFICIENTS]
+    columns = jacobian(pair_equations(observed), COEFFICIENTS, parameters)[:, :-1]
+    starts = run_starts(observed.run)
+    pairs_of_run = np.diff(np.append(starts, len(observed.run)))
+    of_load = contrast_by_run(observed) / max(observed.load_contrast, 1e-300)
     generator = np.random.default_rng(_SEED)
     covariances = [
         pair_covariance(noise, time=observed.time, run=observed.run, bins=observed.bins)
@@ -177,10 +182,15 @@ def consecutive_fit(
         speed=pairs["speed"].to_numpy(float),
         temperature=temperature_of(pairs, temperature).to_numpy(float),
     )
+    of_runs = np.random.default_rng([_SEED, 1]).standard_normal(
+        (_REPETITIONS, len(starts), len(COEFFICIENTS))
+    )
     repeated = []
-    for choice in choices:
+    for choice, differences in zip(choices, of_runs * spread, strict=True):
         shift = alpha_error * generator.standard_normal()
+        shift += of_load @ differences[:, COEFFICIENTS.index("alpha")]
         disturbance = covariances[choice].draw(generator) - shift * observed.squared_load
+        disturbance += np.sum(columns * np.repeat(differences, pairs_of_run, axis=0), axis=1)
         again = _viscous_law(means, unloaded + disturbance, alpha + shift)
         repeated.append([getattr(again, name) for name in names])
     within = observed.friction_within - alpha * observed.squared_load_within

@@ -11,15 +11,17 @@ TIME = np.array([0.0, 10.0, 25.0, 400.0, 500.0, 0.0, 30.0, 31.0, 90.0])
 RUN = np.array([0, 0, 0, 0, 0, 1, 1, 1, 1])
 KNOWN = np.array([1.0, 1.0, 2.0, 1.0, 1.0, 3.0, 1.0, 1.0, 2.0]) * 0.01
 DURATIONS = (20.0, 120.0, 900.0)
+SHARED = np.array([np.full(9, 0.3), 0.1 * np.arange(9.0)])
 LOGS = np.log([[0.2, 0.5], [0.3, 0.1], [0.05, 0.4]])
 
 
 def dense(logs, duration):
-    """The covariance of white noise and drift as their definition says it, one below the other."""
+    """The covariance of white noise, drift and runs as their definition says it, part by part."""
     apart = np.abs(TIME[:, None] - TIME[None, :])
-    drift = np.exp(-apart / duration) * (RUN[:, None] == RUN[None, :])
+    same = RUN[:, None] == RUN[None, :]
     pair, slow = np.exp(2 * np.asarray(logs))
-    return np.diag(KNOWN), pair * np.eye(len(TIME)), slow * drift
+    fixed = np.diag(KNOWN) + same * (SHARED.T @ SHARED)
+    return fixed, pair * np.eye(len(TIME)), slow * np.exp(-apart / duration) * same
 
 
 def parts():
@@ -38,7 +40,7 @@ def projection(covariance, basis):
 def likelihood():
     basis, residual = parts()
     drifts = [Drift.of(TIME, RUN, duration) for duration in DURATIONS]
-    return NoiseLikelihood.of(np.column_stack([basis, residual]), KNOWN, drifts)
+    return NoiseLikelihood.of(np.column_stack([basis, residual]), KNOWN, drifts, RUN, SHARED)
 
 
 def dense_cost(logs, duration):
@@ -88,7 +90,8 @@ def test_the_likeliest_is_where_another_search_finds_it():
     residual = np.cumsum(generator.normal(size=80)) * 0.2 + 0.3 * generator.normal(size=80)
     columns = np.column_stack([np.full(80, 80**-0.5), residual])
     drifts = [Drift.of(time, np.zeros(80, int), duration) for duration in (100.0, 1000.0, 1e4)]
-    noise = NoiseLikelihood.of(columns, np.full(80, 0.003), drifts)
+    run, none = np.zeros(80, int), np.zeros((0, 80))
+    noise = NoiseLikelihood.of(columns, np.full(80, 0.003), drifts, run, none)
     bounds = float(np.log(1e-3)), float(np.log(10.0))
     logs, value = likeliest(noise, np.log([0.5, 0.5]), bounds)
     for number in range(3):
@@ -106,8 +109,9 @@ def test_what_is_not_there_ends_at_its_bound():
     """Alternating residuals have no drift."""
     residual = np.tile([1.0, -1.0], 20)
     columns = np.column_stack([np.full(40, 40**-0.5), residual])
-    drift = Drift.of(60.0 * np.arange(40.0), np.zeros(40, int), 3000.0)
-    noise = NoiseLikelihood.of(columns, np.full(40, 0.01), [drift])
+    run, none = np.zeros(40, int), np.zeros((0, 40))
+    drift = Drift.of(60.0 * np.arange(40.0), run, 3000.0)
+    noise = NoiseLikelihood.of(columns, np.full(40, 0.01), [drift], run, none)
     logs, _ = likeliest(noise, np.log([0.5, 0.5]), (float(np.log(1e-3)), float(np.log(10.0))))
     assert np.exp(logs[0, 0]) == pytest.approx(1.0, rel=0.05)
     assert np.exp(logs[0, 1]) < 0.01
