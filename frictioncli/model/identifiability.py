@@ -67,6 +67,8 @@ class Determination:
         if term == "gamma":
             dropped["delta"] = reason
         merged = self.merged if holder is None else self.merged | {holder: holds}
+        if holder == "gamma":
+            merged["delta"] = "the rate at which the whole viscous coefficient falls"
         return Determination(tuple(t for t in self.terms if t != term), dropped, merged)
 
     def without_gamma(self, reason: str) -> "Determination":
@@ -79,8 +81,9 @@ class Determination:
         """
         if "gamma" not in self.merged:
             return self.without("gamma", f"{reason}; left out (0)", None, "")
+        taken = ("gamma", "delta")
         dropped = {name: why for name, why in self.dropped.items() if name != "beta"}
-        merged = {name: what for name, what in self.merged.items() if name != "gamma"}
+        merged = {name: what for name, what in self.merged.items() if name not in taken}
         terms = tuple(one for one in COEFFICIENTS if one == "beta" or one in self.terms)
         return Determination(terms, dropped, merged).without(
             "gamma",

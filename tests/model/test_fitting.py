@@ -131,6 +131,17 @@ def test_one_speed_merges_coulomb_and_viscous_friction():
     assert model.parameters["delta"].estimate == pytest.approx(0.056, rel=0.3)
 
 
+def test_without_beta_delta_is_the_rate_of_the_whole_viscous_coefficient():
+    """Between 25 and 38 °C: delta times gamma's part of it, 2.68 of 6.16 at 31.5 °C."""
+    temperature, time, phase = (values[:14] for values in cycle_temperatures())
+    model = fitted(torques(1, drift=1.0, temperatures=(temperature, time, phase)))
+    assert "fixed at 0" in model.parameters["beta"].reason
+    delta = model.parameters["delta"]
+    assert "whole viscous coefficient" in delta.reason
+    assert delta.determined
+    assert delta.ci95[0] < 0.056 * 2.68 / 6.16 < delta.ci95[1]
+
+
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_at_one_speed_beta_does_not_come_back_for_gamma(seed):
     """It was merged into Coulomb friction, not into gamma."""
