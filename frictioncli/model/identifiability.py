@@ -2,7 +2,8 @@
 
 A term that the experiment did not excite, or whose confidence interval is too wide, is not fitted:
 another term takes over its share, or it is left out. The reason is given with the numbers that
-decided it.
+decided it. The intervals that decide are those by noise within the runs: what these runs show is
+there, even where other days may differ.
 """
 
 from dataclasses import dataclass, field
@@ -134,7 +135,7 @@ def at_bound(estimate: Estimate) -> dict[str, str]:
         for bound in DELTA_BOUNDS:
             if abs(estimate.parameters.delta / bound - 1) < 1e-3:
                 flags["delta"] = f"at the bound {bound:g} of its search range"
-        if "delta" not in flags and estimate.interval("delta")[0] <= 0:
+        if "delta" not in flags and estimate.interval_within("delta")[0] <= 0:
             flags["delta"] = "its interval includes 0, no fall with temperature"
     return flags
 
@@ -184,11 +185,13 @@ def _by_interval(
             "at its lower bound 0: friction does not fall with temperature in these data"
         )
     half_width = {
-        name: (high - low) / 2 for name in estimate.names for low, high in [estimate.interval(name)]
+        name: (high - low) / 2
+        for name in estimate.names
+        for low, high in [estimate.interval_within(name)]
     }
     if "alpha" in chosen.terms:
         squares = observed.squared_load[observed.row_pair] + observed.squared_load_within
-        low, high = estimate.interval("alpha")
+        low, high = estimate.interval_within("alpha")
         vague = half_width["alpha"] * np.ptp(squares) > _VAGUE * friction
         # a user will ask for loads at least as great as the friction
         greatest = max(float(np.max(squares)), friction**2)

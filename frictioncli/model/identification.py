@@ -47,7 +47,9 @@ class Estimate:
     names : tuple of str
         The parameters that were fitted, in the order of ``covariance``.
     covariance : ndarray, shape (names, names)
-        Covariance of the estimates under the estimated noise.
+        Covariance of the estimates under the estimated noise and differences between runs.
+    within : ndarray, shape (names, names)
+        The same if other runs had the coefficients of these: what the noise alone does.
     freedom : float
         Degrees of freedom of that noise estimate.
     noise : Noise
@@ -61,25 +63,23 @@ class Estimate:
     parameters: FrictionParameters
     names: tuple[str, ...]
     covariance: Array
+    within: Array
     freedom: float
     noise: Noise
     residual: Array
     rmse: float
 
-    def interval(self, name: str, level: float = 0.95) -> tuple[float, float]:
-        """Return the confidence interval of a fitted parameter.
+    def interval(self, name: str) -> tuple[float, float]:
+        """Return the 95 % confidence interval of a fitted parameter."""
+        return self._interval(name, self.covariance)
 
-        Parameters
-        ----------
-        name : str
-            The parameter.
-        level : float, optional
-            Confidence level.
-        """
+    def interval_within(self, name: str) -> tuple[float, float]:
+        """Return the 95 % confidence interval of a fitted parameter for these runs only."""
+        return self._interval(name, self.within)
+
+    def _interval(self, name: str, covariance: Array) -> tuple[float, float]:
         index = self.names.index(name)
-        half_width = t_quantile(0.5 + level / 2, self.freedom) * np.sqrt(
-            self.covariance[index, index]
-        )
+        half_width = t_quantile(0.975, self.freedom) * np.sqrt(covariance[index, index])
         centre = getattr(self.parameters, name)
         return float(centre - half_width), float(centre + half_width)
 
@@ -102,7 +102,10 @@ def fit_terms(observed: Observations, terms: tuple[str, ...]) -> Estimate:
         residual = pair_residual(observed, parameters)
         plausible, shares = noise_of_pairs(observed, terms, parameters, shares)
         noise = plausible[0][0]
-    covariance = _covariance(observed, terms, parameters, plausible, shares)
+    covariance, within_runs = (
+        _covariance(observed, terms, parameters, plausible, differences)
+        for differences in (shares, np.zeros(len(terms)))
+    )
     within = observed.friction_within - parameters.alpha * observed.squared_load_within
     rows = len(within)
     squares = np.sum(observed.bins * np.square(residual)) + within @ within
@@ -110,6 +113,7 @@ def fit_terms(observed: Observations, terms: tuple[str, ...]) -> Estimate:
         parameters=parameters,
         names=names,
         covariance=covariance,
+        within=within_runs,
         freedom=freedom(observed, noise, len(names)),
         noise=noise,
         residual=residual,
@@ -144,7 +148,8 @@ def with_error_of(
     size = np.linalg.norm(weighted, axis=0)
     size = np.where(size > 0, size, 1.0)
     change = error * (np.linalg.lstsq(weighted / size, moved, rcond=1e-10)[0] / size)
-    return replace(estimate, covariance=estimate.covariance + np.outer(change, change))
+    added = np.outer(change, change)
+    return replace(estimate, covariance=estimate.covariance + added, within=estimate.within + added)
 
 
 def noise_of_pairs(

@@ -195,10 +195,12 @@ def consecutive_fit(
         repeated.append([getattr(again, name) for name in names])
     within = observed.friction_within - alpha * observed.squared_load_within
     squares = np.sum(observed.bins * np.square(residual)) + within @ within
+    covariance = np.cov(np.array(repeated).T)
     estimate = Estimate(
         parameters=parameters,
         names=names,
-        covariance=np.cov(np.array(repeated).T),
+        covariance=covariance,
+        within=covariance,
         freedom=freedom(observed, plausible[0][0], len(names)),
         noise=plausible[0][0],
         residual=residual,
