@@ -13,12 +13,12 @@ import pandas as pd
 from scipy.sparse import csr_array
 
 from frictioncli.arrays import Array, Indices
+from frictioncli.diagnosis.data.group_whitening import GroupWhitening
 from frictioncli.diagnosis.data.pair_neighbours import (
     jumps_of,
     neighbours,
     same_bins,
     stretches_of,
-    white_of,
 )
 from frictioncli.diagnosis.data.within_noise import (
     LEAST_FREEDOM,
@@ -75,7 +75,7 @@ class PairLayout:
         number: white deviations of variance 1 stay so.
     pooled_means : sparse matrix, shape (groups, pairs)
         The same sums of means of pairs.
-    white : sparse matrix, shape (groups, groups), or None
+    white : GroupWhitening or None
         Makes the sums white; None where they are so.
     noise : WithinNoise
         Noise within pairs.
@@ -94,7 +94,7 @@ class PairLayout:
     averaging: csr_array
     pooling: csr_array
     pooled_means: csr_array
-    white: csr_array | None
+    white: GroupWhitening | None
     noise: WithinNoise
     blocks: tuple[Indices, ...]
 
@@ -136,11 +136,13 @@ class PairLayout:
         block = neighbours(run, level, stretch)
         keys = pd.DataFrame({"block": block[row_pair], "position": position})
         group = keys.groupby(["block", "position"]).ngroup().to_numpy()
+        noise = noise or WithinNoise()
+        white = GroupWhitening.of(noise, keys, speed, block) if noise.share > 0 else None
+        group = group if white is None else white.place[group]
         weight = 1 / np.sqrt(np.bincount(group))
         pooling = csr_array(
             (weight[group], (group, np.arange(len(group)))), shape=(len(weight), len(group))
         )
-        noise = noise or WithinNoise()
         bins = np.bincount(row_pair).astype(float)
         place = np.arange(len(row_pair)), row_pair
         of_pair = csr_array((np.ones(len(row_pair)), place), shape=(len(row_pair), len(bins)))
@@ -155,7 +157,7 @@ class PairLayout:
             averaging=csr_array((of_pair / bins).T),
             pooling=pooling,
             pooled_means=csr_array(pooling @ of_pair),
-            white=white_of(noise, keys, speed, block) if noise.share > 0 else None,
+            white=white,
             noise=noise,
             blocks=same_bins(row_pair, block, position),
         )
@@ -261,8 +263,8 @@ class PairLayout:
             shape = rows.shape[1:]
             return np.zeros((self.pooling.shape[0], *shape)), np.zeros((len(self.bins), *shape))
         means = self.means(rows)
-        pooled = self.pooling @ rows - self.pooled_means @ means
-        return np.asarray(pooled if self.white is None else self.white @ pooled), means
+        pooled = np.asarray(self.pooling @ rows - self.pooled_means @ means)
+        return pooled if self.white is None else self.white.applied(pooled), means
 
     def means(self, rows: Array) -> Array:
         """Return the mean of each pair's rows, shape (pairs, ...)."""

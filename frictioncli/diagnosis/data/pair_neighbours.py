@@ -6,10 +6,8 @@ not the same: a group ends there, and the change is no noise.
 
 import numpy as np
 import pandas as pd
-from scipy.sparse import block_diag, csr_array
 
 from frictioncli.arrays import Array, Flags, Indices
-from frictioncli.diagnosis.data.within_noise import WithinNoise, whitening
 
 _JUMP = 16.0
 """Mean square of a change from pair to pair, relative to the usual one, that is no noise."""
@@ -100,33 +98,6 @@ def same_bins(row_pair: Indices, group: Indices, position: Array) -> tuple[Indic
         key = (int(group[pair]), position[start:end].tobytes())
         alike.setdefault(key, []).append(np.arange(start, end))
     return tuple(np.array(rows) for rows in alike.values() if len(rows) > 1 and len(rows[0]) > 2)
-
-
-def white_of(noise: WithinNoise, keys: pd.DataFrame, speed: Array, block: Indices) -> csr_array:
-    """Return the matrix that makes pooled deviations white, group by group.
-
-    Parameters
-    ----------
-    noise : WithinNoise
-        Noise within pairs.
-    keys : DataFrame
-        Columns ``block`` and ``position`` of each row.
-    speed : ndarray, shape (pairs,)
-        Speed of each pair. [deg/s]
-    block : ndarray of int, shape (pairs,)
-        Group of each pair.
-    """
-    pairs_speed = pd.Series(speed).groupby(block).mean().to_numpy()
-    groups = keys.drop_duplicates().sort_values(["block", "position"])
-    known: dict[tuple[float, bytes], Array] = {}
-    parts = []
-    for number, own in groups.groupby("block")["position"]:
-        position, at = own.to_numpy(), float(pairs_speed[number])
-        key = (round(at, 1), position.tobytes())
-        if key not in known:
-            known[key] = whitening(noise.correlation(position, at))[0]
-        parts.append(known[key])
-    return csr_array(block_diag(parts, format="csr"))
 
 
 def _at_one_speed(run: Indices, level: Indices) -> Indices:
