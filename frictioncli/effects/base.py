@@ -5,7 +5,7 @@ Shape parameters change the columns; coefficients multiply them.
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 from typing import Literal, NamedTuple
 
@@ -104,6 +104,14 @@ class EffectTable:
     travel: Array
     rest: Array
     order: Array
+    _angles: list[Array] = field(default_factory=list, init=False, repr=False, compare=False)
+
+    @property
+    def angles(self) -> Array:
+        """Centres of the angle bins, each once, in order. [deg]."""
+        if not self._angles:
+            self._angles.append(np.unique(self.position))
+        return self._angles[0]
 
 
 class Basis(NamedTuple):

@@ -60,8 +60,8 @@ def rows_of(table: EffectTable, chosen: Flags | Indices) -> EffectTable:
     chosen : ndarray of bool or int
         The rows.
     """
-    columns = {one.name: getattr(table, one.name)[chosen] for one in fields(EffectTable)}
-    return EffectTable(**columns)
+    names = [one.name for one in fields(EffectTable) if one.init]
+    return EffectTable(**{name: getattr(table, name)[chosen] for name in names})
 
 
 def pair_heads(table: EffectTable) -> PairHeads:

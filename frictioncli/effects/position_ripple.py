@@ -32,7 +32,7 @@ def basis(table: EffectTable, *, order: float) -> Basis:
     order : float
         Periods per turn of the joint. [1/turn]
     """
-    angles = np.unique(table.position)
+    angles = table.angles
     finest = float(np.min(np.diff(angles))) if len(angles) > 1 else 360.0
     long_enough = order * float(np.ptp(angles)) / 360.0 >= LEAST_PERIODS
     enough = long_enough and len(angles) >= _LEAST_ANGLES

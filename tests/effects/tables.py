@@ -1,12 +1,14 @@
 """Tables of pairs and angle bins for the tests of effects."""
 
+from dataclasses import fields
+
 import numpy as np
 
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import EffectTable
 from frictioncli.model.friction import PUBLISHED, friction_torque
 
-COLUMNS = tuple(EffectTable.__dataclass_fields__)
+COLUMNS = tuple(one.name for one in fields(EffectTable) if one.init)
 
 
 def small(**columns) -> EffectTable:
