@@ -23,7 +23,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from frictioncli.arrays import Array
+from frictioncli.arrays import Array, Indices
 from frictioncli.effects.base import Basis, Effect, EffectTable
 
 _ROOT2 = math.sqrt(2.0)
@@ -34,6 +34,8 @@ _WEIGHTS = ((2.0 + _ROOT2) / 4.0, (2.0 - _ROOT2) / 4.0)
 _MOVING = frozenset({"angle", "load", "load_slope", "friction"})
 """Columns of the table that change along a move."""
 
+_ALL = slice(None)
+"""All rows."""
 
 EarlierTables = dict[float, EffectTable]
 """Tables at the angles of a forward move so long before, of a reverse move after. [s]"""
@@ -79,6 +81,7 @@ def late_basis(
     shape: Mapping[str, float],
     late: LateTorque,
     *,
+    rows: slice | Indices = _ALL,
     counted: float,
     alpha: float,
     separate_load: bool,
@@ -96,6 +99,8 @@ def late_basis(
         Its shape parameters.
     late : LateTorque
         Response behind which the torque was logged.
+    rows : slice or ndarray of int, optional
+        Rows of the table that the columns are for.
     counted : float
         Sign convention of the torques: +1 where forward is load plus friction, else -1.
     alpha : float
@@ -107,7 +112,8 @@ def late_basis(
     """
     known = {} if known is None else known
     if _MOVING.isdisjoint((*effect.needs, *effect.uses)):
-        return effect.evaluate(table, shape)
+        there = effect.evaluate(table, shape)
+        return Basis(there.friction[rows], there.load[rows])
     friction: Array | float = 0.0
     load: Array | float = 0.0
     for weight, time in late.nodes():
@@ -115,12 +121,26 @@ def late_basis(
             if moment not in known:
                 known[moment] = _earlier(table, moment, counted, alpha, separate_load)
         forward, reverse = (effect.evaluate(known[way], shape) for way in (time, -time))
-        friction = friction + weight / 2 * (forward.friction + reverse.friction)
-        load = load + weight / 2 * (forward.load + reverse.load)
+        size = forward.friction[rows].shape
+        (friction_mean, friction_change), (load_mean, load_change) = (
+            _mean_and_half_change(one[rows], two[rows])
+            for one, two in zip(forward, reverse, strict=True)
+        )
+        friction = friction + weight * friction_mean
+        load = load + weight * load_mean
         if not separate_load:
-            friction = friction + counted * weight / 2 * (forward.load - reverse.load)
-            load = load + counted * weight / 2 * (forward.friction - reverse.friction)
-    return Basis(np.asarray(friction), np.asarray(load))
+            friction = friction + counted * weight * load_change
+            load = load + counted * weight * friction_change
+    return Basis(*(np.broadcast_to(one, size) for one in (friction, load)))
+
+
+def _mean_and_half_change(
+    forward: Array, reverse: Array
+) -> tuple[Array, Array] | tuple[float, float]:
+    """Return half the sum and half the difference of columns; 0 where all are zero."""
+    if not (forward.any() or reverse.any()):
+        return 0.0, 0.0
+    return (forward + reverse) / 2, (forward - reverse) / 2
 
 
 def _earlier(

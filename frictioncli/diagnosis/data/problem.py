@@ -149,18 +149,25 @@ class Problem:
         """Return an effect's columns, evaluated for its shape."""
         if self.late is None or effect.measurement:
             friction, load = effect.evaluate(self.all_runs, shape)
-        else:
-            friction, load = late_basis(
-                effect,
-                self.all_runs,
-                shape,
-                self.late,
-                counted=self.counted,
-                alpha=self.parameters.alpha,
-                separate_load=self.has_load_channel,
-                known=self._earlier,
-            )
-        return Basis(friction[self.rows], load[self.rows])
+            return Basis(friction[self._taken], load[self._taken])
+        return late_basis(
+            effect,
+            self.all_runs,
+            shape,
+            self.late,
+            rows=self._taken,
+            counted=self.counted,
+            alpha=self.parameters.alpha,
+            separate_load=self.has_load_channel,
+            known=self._earlier,
+        )
+
+    @property
+    def _taken(self) -> slice | Indices:
+        """The rows, as a slice where they stand together: what is taken is not copied then."""
+        first, count = (int(self.rows[0]), len(self.rows)) if len(self.rows) else (0, 0)
+        together = count and int(self.rows[-1]) == first + count - 1
+        return slice(first, first + count) if together else self.rows
 
     @property
     def run_names(self) -> dict[int, str]:
