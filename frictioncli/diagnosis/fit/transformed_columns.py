@@ -53,28 +53,23 @@ class NoiseModels:
 
     spectra: tuple[Spectra, Spectra]
     indices: tuple[NoiseIndex, ...]
-    _precisions: dict[tuple[int, int], tuple[list[int], Array]] = field(default_factory=dict)
+    _precisions: dict[int, Array] = field(default_factory=dict)
 
-    def precisions(self, channel: int, time: int) -> tuple[list[int], Array]:
-        """Return the noise models of a correlation time, and the precision of each mode.
+    def precisions(self, channel: int) -> Array:
+        """Return the precision of each mode, shape (correlation times, strengths, pairs).
+
+        One over the variances at scale 1, at all strengths of the drift.
 
         Parameters
         ----------
         channel : int
             0 for friction, 1 for load.
-        time : int
-            Number of the correlation time.
-
-        Returns
-        -------
-        list of int, ndarray, shape (pairs, noise models)
-            Numbers of the noise models, and one over the variances at scale 1.
         """
-        if (channel, time) not in self._precisions:
-            numbers = [number for number, index in enumerate(self.indices) if index[0] == time]
-            variances = [self.variance(channel, number) for number in numbers]
-            self._precisions[channel, time] = numbers, 1 / np.column_stack(variances)
-        return self._precisions[channel, time]
+        if channel not in self._precisions:
+            values = np.array([one.values for one in self.spectra[channel].spectra])
+            strengths = STRENGTHS[:, np.newaxis]
+            self._precisions[channel] = 1 / (1 + strengths * values[:, np.newaxis])
+        return self._precisions[channel]
 
     def time_and_precision(self, channel: int, number: int) -> tuple[int, Array]:
         """Return the correlation time of a noise model, and the precision of each mode.
@@ -128,6 +123,7 @@ class Part:
     noises: NoiseModels
     shown: tuple[int, ...] = (0, 1)
     _modes: dict[tuple[int, int], Array] = field(default_factory=dict)
+    _at_all_times: dict[int, Array] = field(default_factory=dict)
 
     def take(self, chosen: slice | list[int]) -> "Part":
         """Return some of the columns."""
@@ -144,6 +140,13 @@ class Part:
             modes[:, present] = spectra.modes_at(time, means[:, present])
             self._modes[channel, time] = modes
         return self._modes[channel, time]
+
+    def at_all_times(self, channel: int) -> Array:
+        """Return the same at all correlation times, shape (times, pairs, columns)."""
+        if channel not in self._at_all_times:
+            times = range(len(self.noises.spectra[channel].spectra))
+            self._at_all_times[channel] = np.stack([self.modes(channel, time) for time in times])
+        return self._at_all_times[channel]
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,23 +218,20 @@ class TransformedColumns:
         shown = self.shown(channel)
         return np.vstack([one.columns.channels[channel].within.T @ columns for one in shown])
 
-    def combined(self, channel: int, time: int, combination: Array) -> Array:
-        """Return a combination of the columns in the eigenvectors, shape (pairs,).
+    def combined(self, channel: int, combination: Array) -> Array:
+        """Return a combination of the columns in the eigenvectors, shape (times, pairs).
 
         Parameters
         ----------
         channel : int
             0 for friction, 1 for load.
-        time : int
-            Number of the correlation time.
         combination : ndarray, shape (columns,)
             The combination.
         """
         ends = np.cumsum([one.columns.count for one in self.parts])
         shares = zip(self.parts, np.split(combination, ends[:-1]), strict=True)
-        return np.asarray(
-            sum(one.modes(channel, time) @ share for one, share in shares if channel in one.shown)
-        )
+        shown = [(one, share) for one, share in shares if channel in one.shown]
+        return np.asarray(sum(one.at_all_times(channel) @ share for one, share in shown))
 
     def beside(self, own: Sequence[Part]) -> "TransformedColumns":
         """Return the columns with further ones before the last one, the misfit.

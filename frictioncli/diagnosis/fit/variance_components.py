@@ -208,13 +208,9 @@ def _under_each_model(
     ndarray, shape (noise models,), and ndarray, shape (noise models, base)
         Of the pair means under each noise model.
     """
-    noises = columns.noises
-    whole = np.empty(len(noises.indices))
-    right = np.empty((len(noises.indices), base))
-    for time in range(len(noises.spectra[channel].spectra)):
-        modes = columns.combined(channel, time, combination)
-        numbers, precisions = noises.precisions(channel, time)
-        weighted = precisions * modes[:, np.newaxis]
-        whole[numbers] = modes @ weighted
-        right[numbers] = weighted.T @ columns.parts[0].modes(channel, time)[:, :base]
-    return whole, right
+    modes = columns.combined(channel, combination)
+    weighted = columns.noises.precisions(channel) * modes[:, np.newaxis]
+    whole = (weighted @ modes[:, :, np.newaxis])[:, :, 0]
+    right = weighted @ columns.parts[0].at_all_times(channel)[:, :, :base]
+    time, strength = np.array(columns.noises.indices).T
+    return whole[time, strength], right[time, strength]
