@@ -69,7 +69,7 @@ def found_causes(
     ]
     if not known or not first.search.refused:
         return first
-    preparation = Preparation(known)
+    preparation = Preparation(known, judging.preparation)
     clear = clear_effects(preparation.beside(base), known)
     if set(clear) <= set(before.effects):
         return first

@@ -85,7 +85,7 @@ def find_causes(
     beside = preparation.beside(problem, discrepancy, measurement)
     precomputed = beside.precomputed
     tried = applicable(effects, problem.table)
-    hypotheses = preparation.hypotheses(problem, tried, discrepancy, measurement)
+    hypotheses = preparation.hypotheses(problem, tried)
     catalogue = Catalogue.of(precomputed, hypotheses)
     search = _Search(precomputed, catalogue, settings, margin, ramps, beside.effects)
     accepted: list[EffectFit] = []

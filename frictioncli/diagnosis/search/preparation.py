@@ -22,7 +22,10 @@ class _Prepared:
     discrepancy: float
     measurement: tuple[Effect, ...]
     beside: BesideBase
-    hypotheses: dict[int, tuple[Effect, Hypothesis]]
+
+
+_Hypotheses = tuple[Problem, dict[int, tuple[Effect, Hypothesis]]]
+"""A problem with the hypotheses that were worked out there, by the effect."""
 
 
 class Preparation:
@@ -34,11 +37,16 @@ class Preparation:
     ----------
     found : sequence of EffectFit, optional
         Properties of the joint beside which effects of the measurement are judged.
+    before : Preparation, optional
+        Another one, whose hypotheses are the same: they do not depend on what stands beside them.
     """
 
-    def __init__(self, found: Sequence[EffectFit] = ()) -> None:
+    def __init__(
+        self, found: Sequence[EffectFit] = (), before: "Preparation | None" = None
+    ) -> None:
         self._found = tuple(found)
         self._known: list[_Prepared] = []
+        self._hypotheses: list[_Hypotheses] = [] if before is None else before._hypotheses
 
     def beside(
         self,
@@ -59,13 +67,7 @@ class Preparation:
         """
         return self._of(problem, discrepancy, measurement).beside
 
-    def hypotheses(
-        self,
-        problem: Problem,
-        effects: tuple[Effect, ...],
-        discrepancy: float = SHARE,
-        measurement: tuple[Effect, ...] = MEASUREMENT_EFFECTS,
-    ) -> list[Hypothesis]:
+    def hypotheses(self, problem: Problem, effects: tuple[Effect, ...]) -> list[Hypothesis]:
         """Return effects as hypotheses over their shapes.
 
         Parameters
@@ -74,10 +76,10 @@ class Preparation:
             One joint's measurements and base model.
         effects : tuple of Effect
             Effects that can be tested there.
-        discrepancy, measurement : float and tuple of Effect, optional
-            As of :meth:`beside`.
         """
-        known = self._of(problem, discrepancy, measurement).hypotheses
+        known = next((own for one, own in self._hypotheses if one is problem), {})
+        others = [one for one in self._hypotheses if one[0] is not problem]
+        self._hypotheses[:] = [*others[1 - _AT_ONCE :], (problem, known)]
         for effect in effects:
             if id(effect) not in known:
                 known[id(effect)] = effect, hypothesis_of(effect, problem)
@@ -108,7 +110,7 @@ class Preparation:
                 for spectra in one.beside.precomputed.noises.spectra
             ]
             beside = beside_base(problem, discrepancy, measurement, self._found, spectra)
-        found = _Prepared(problem, discrepancy, measurement, beside, {})
+        found = _Prepared(problem, discrepancy, measurement, beside)
         others = [one for one in self._known if one not in alike]
         self._known = [*others[1 - _AT_ONCE :], found]
         return found
