@@ -212,7 +212,11 @@ class Catalogue:
 
 def _blocks(columns: Array, weight: Array | None, shapes: int, width: int) -> Array:
     """Return inner products within each shape, shape (shapes, width, width)."""
-    weighted = columns if weight is None else columns * weight[:, np.newaxis]
     grouped = columns.reshape(len(columns), shapes, width)
-    second = weighted.reshape(len(columns), shapes, width)
-    return np.einsum("rsi,rsj->sij", grouped, second)
+    weights = np.ones(len(columns)) if weight is None else weight
+    found = np.empty((shapes, width, width))
+    for first in range(width):
+        for second in range(first, width):
+            products = grouped[:, :, first] * grouped[:, :, second]
+            found[:, first, second] = found[:, second, first] = weights @ products
+    return found
