@@ -124,13 +124,21 @@ class WeightedMisfit:
             Its shapes.
         """
         width = len(form.coefficients)
-        right, left, size = self._beside([form.columns(self.problem.table, one) for one in shapes])
+        parts = [form.columns(self.problem.table, one) for one in shapes]
+        weighted, rows = self._weighted(parts)
+        right, hidden = weighted.T @ self.misfit[rows], self.known[:, rows] @ weighted
         if width == 1:
-            own = np.diag(left)
+            size = np.einsum("rs,rs->s", weighted, weighted)
+            own = size - np.einsum("rs,rs->s", hidden, hidden)
             shown = own > _LEAST_LEFT * size
             return np.where(shown, right**2 / np.where(shown, own + _FREE * size, 1.0), 0.0)
-        places = (slice(number * width, (number + 1) * width) for number in range(len(shapes)))
-        return np.array([_statistic(right[one], left[one, one], size[one]) for one in places])
+        found = []
+        for first in range(0, len(right), width):
+            columns, taken = (one[:, first : first + width] for one in (weighted, hidden))
+            whole = columns.T @ columns
+            left = whole - taken.T @ taken
+            found.append(_statistic(right[first : first + width], left, np.diag(whole)))
+        return np.array(found)
 
     def together(self, forms: Sequence[tuple[Form, Shape]]) -> float:
         """Return what several forms explain together.
@@ -141,13 +149,13 @@ class WeightedMisfit:
             The forms with their shapes.
         """
         parts = [form.columns(self.problem.table, shape) for form, shape in forms]
-        return _statistic(*self._beside(parts))
+        weighted, rows = self._weighted(parts)
+        hidden, whole = self.known[:, rows] @ weighted, weighted.T @ weighted
+        left = whole - hidden.T @ hidden
+        return _statistic(weighted.T @ self.misfit[rows], left, np.diag(whole))
 
-    def _beside(self, parts: Sequence[Basis]) -> tuple[Array, Array, Array]:
-        """Return inner products of columns beside what is known, and their own squares.
-
-        With the misfit, shape (columns,); with each other, shape (columns, columns).
-        """
+    def _weighted(self, parts: Sequence[Basis]) -> tuple[Array, slice]:
+        """Return weighted columns in the channels in which they show, and the rows of these."""
         upper, lower = (
             weights.weighted(np.hstack([one[channel] for one in parts]))
             if any(one[channel].any() for one in parts)
@@ -157,14 +165,10 @@ class WeightedMisfit:
         if lower is None:
             width = sum(one.friction.shape[1] for one in parts)
             weighted = np.zeros((0, width)) if upper is None else upper
-            rows = slice(0, len(weighted))
-        elif upper is None:
-            weighted, rows = lower, slice(len(self.misfit) - len(lower), None)
-        else:
-            weighted, rows = np.vstack([upper, lower]), slice(None)
-        hidden = self.known[:, rows] @ weighted
-        whole = weighted.T @ weighted
-        return weighted.T @ self.misfit[rows], whole - hidden.T @ hidden, np.diag(whole)
+            return weighted, slice(0, len(weighted))
+        if upper is None:
+            return lower, slice(len(self.misfit) - len(lower), None)
+        return np.vstack([upper, lower]), slice(None)
 
     def best_of(self, form: Form, shapes: Sequence[dict[str, float]] | None = None) -> Explained:
         """Return the shape at which a form explains most, and what it explains there.
