@@ -50,8 +50,8 @@ class BaseProducts:
         )
 
     @classmethod
-    def of_part(cls, part: Part, base: int, channel: int) -> "BaseProducts":
-        """Return the decomposition for the first columns of a part in one channel.
+    def of_part(cls, part: Part, base: int) -> tuple["BaseProducts", "BaseProducts"]:
+        """Return the decomposition for the first columns of a part, in friction and load.
 
         Parameters
         ----------
@@ -59,9 +59,11 @@ class BaseProducts:
             The part.
         base : int
             Number of the columns of the base.
-        channel : int
-            0 for friction, 1 for load.
         """
+        return cls._in_channel(part, base, 0), cls._in_channel(part, base, 1)
+
+    @classmethod
+    def _in_channel(cls, part: Part, base: int, channel: int) -> "BaseProducts":
         noises = part.noises
         own = np.empty((len(noises.indices), base, base))
         for number in range(len(own)):

@@ -169,9 +169,7 @@ def _with_likeliest_noise(components: Components, products: Products, fit: Mixed
     # the base is fitted anew
     left = np.append(-fit.coefficients, 1.0)
     left[:base] = 0.0
-    bases = components.bases or [
-        BaseProducts.of_part(columns.parts[0], base, channel) for channel in (0, 1)
-    ]
+    bases = components.bases or BaseProducts.of_part(columns.parts[0], base)
     noise, scales = [], []
     for channel in (0, 1):
         whole, right = _under_each_model(columns, channel, base, left)

@@ -124,9 +124,6 @@ class Precomputed:
             for one, deviation in zip(noises.spectra, point, strict=True)
         ]
         products = Products.of(columns)
-        of_base = [
-            BaseProducts.of_part(columns.parts[0], base.count, channel) for channel in (0, 1)
-        ]
         return cls(
             problem=problem,
             measurement=tuple(bases),
@@ -156,7 +153,7 @@ class Precomputed:
                 pairs=len(layout.time),
                 determinants=(noises.determinants(0), noises.determinants(1)),
                 drifts=(noises.drifts(0), noises.drifts(1)),
-                bases=(of_base[0], of_base[1]),
+                bases=BaseProducts.of_part(columns.parts[0], base.count),
             ),
         )
 
