@@ -9,6 +9,7 @@ from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, phys
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.confounded import confounded
+from frictioncli.diagnosis.search.shown import Shown
 from frictioncli.diagnosis.search.standing import with_standing, without_cancelling
 from frictioncli.effects import BY_NAME
 from tests.diagnosis.dense_noise import problem
@@ -119,6 +120,29 @@ def test_bounds_in_torque_grow_with_the_friction_of_the_joint(joint):
         one = cause(drift, (factor * parameter.upper,), (0.01,), shape=shape)
         ((found, _),) = standing(joint, one)
         assert found == expected
+
+
+@pytest.mark.parametrize(
+    ("name", "shown", "expected"),
+    [
+        ("position_ripple", Shown(1.0, 0.6), "named"),
+        ("position_ripple", Shown(1.0, 0.4), "undetermined"),
+        ("position_ripple", Shown(0.4, 1.0), "undetermined"),
+        # by the square of the speed, slower moves show little of it
+        ("quadratic_drag", Shown(1.0, 0.4), "named"),
+        ("torque_delay", Shown(0.5, 0.0), "named"),
+        ("torque_delay", Shown(0.2, 0.0), "undetermined"),
+    ],
+)
+def test_what_the_residuals_do_not_show_has_no_name(joint, name, shown, expected):
+    """Of a ripple slower moves must show it, too: a finer one would be there at one speed only."""
+    effect = BY_NAME[name]
+    shape = {axis.name: 20.0 for axis in effect.shape}
+    values = [0.02 if name == "torque_delay" else 1e-4] * len(effect.coefficients)
+    one = replace(cause(effect, values, np.divide(values, 10), shape=shape), shown=shown)
+    ((found, reason),) = standing(joint, one)
+    assert found == expected
+    assert ("show" in reason) == (expected != "named")
 
 
 def test_two_causes_that_cancel_are_not_both_named(joint):

@@ -9,8 +9,9 @@ import pytest
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.axis_columns import axis_columns
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.effect_size import left_size, shown_share
+from frictioncli.diagnosis.search.effect_size import left_size
 from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.shown import shown_of
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.understood import _is_form_of, is_part, understood
 from frictioncli.effects import BY_NAME
@@ -75,7 +76,37 @@ def test_the_residuals_show_a_share_of_a_cause_at_face_value(share):
     precomputed = Precomputed.of(data)
     own = EffectFit(RIPPLE, {}, np.array([2.0]), np.array([[1e-4]]), 1.0)
     other = EffectFit(effect("other", [(1.0, B)]), {}, np.array([3.0]), np.array([[1e-4]]), 1.0)
-    assert shown_share(precomputed, own, [other]) == pytest.approx(share, abs=0.05)
+    assert shown_of(precomputed, own, [other]).share == pytest.approx(share, abs=0.05)
+
+
+@pytest.mark.parametrize(("fastest_alone", "slower"), [(False, 1.0), (True, 0.0)])
+def test_slower_moves_show_a_ripple_unless_fast_ones_alone_have_it(fastest_alone, slower):
+    """As one has that is too fine for their samples; a quarter of the pairs is as fast."""
+
+    def ripple(rows):
+        fast = rows["speed"] > 0.9 * rows["speed"].max()
+        return 2.0 * SHORT(rows) * (4.0 * fast if fastest_alone else 1.0)
+
+    precomputed = Precomputed.of(problem(5, friction=ripple))
+    own = EffectFit(RIPPLE, {}, np.array([2.0]), np.array([[1e-4]]), 1.0)
+    shown = shown_of(precomputed, own, [])
+    assert shown.share == pytest.approx(1.0, abs=0.05)
+    assert shown.slower == pytest.approx(slower, abs=0.1)
+
+
+def test_a_delay_that_is_in_the_log_is_shown_beside_the_base():
+    """The load at 100 deg/s that is 20 ms late is that of 2 deg before."""
+    data = problem(5)
+    columns = data.basis(BY_NAME["torque_delay"], {})
+    late = replace(
+        data,
+        friction=data.friction + 0.02 * columns.friction[:, 0],
+        load=data.load + 0.02 * columns.load[:, 0],
+    )
+    own = EffectFit(BY_NAME["torque_delay"], {}, np.array([0.02]), np.array([[1e-8]]), 1.0)
+    for one, share in ((late, 1.0), (data, 0.0)):
+        known = Precomputed.of(one, (BY_NAME["torque_delay"],))
+        assert shown_of(known, own, []).share == pytest.approx(share, abs=0.1)
 
 
 def structure_of(size, *axes, channel="friction"):

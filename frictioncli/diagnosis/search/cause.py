@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest
+from frictioncli.diagnosis.search.shown import WHOLE, Shown
 
 CONVINCING = 3.0
 """Log Bayes factor that an effect needs: with twenty effects, any of which may be at work, e³ is
@@ -32,9 +33,8 @@ class Cause:
         RMS of its residual after a fit of the base model. [N·m]
     visible_interval : (float, float)
         95 % interval of that. [N·m]
-    shown : float
-        What the residuals show of it at face value, by least squares beside base and other causes:
-        1 for all, less where something else would have to cancel the rest.
+    shown : Shown
+        What the residuals show of it at face value.
     standing : {"named", "visible", "negligible", "undetermined"}
         What may be said of it: it is named; it stands out of the noise but is not named; it is
         smaller than the margin; its size is not known well enough.
@@ -54,7 +54,7 @@ class Cause:
     visible: float
     visible_interval: tuple[float, float] = (0.0, float("inf"))
     size_interval: tuple[float, float] | None = None
-    shown: float = 1.0
+    shown: Shown = WHOLE
     standing: str = "named"
     reason: str = ""
     holds_on_new_run: bool | None = None

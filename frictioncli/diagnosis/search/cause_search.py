@@ -23,7 +23,7 @@ from frictioncli.diagnosis.noise.significance import (
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidence
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
-from frictioncli.diagnosis.search.effect_size import elsewhere, left_size, shown_share, sizes_of
+from frictioncli.diagnosis.search.effect_size import elsewhere, left_size, sizes_of
 from frictioncli.diagnosis.search.margin import channel_margin, strength
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.possible import beyond_bounds
@@ -31,6 +31,7 @@ from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.rivals import CLEARLY, likeliest, rival_log_bayes_factors
 from frictioncli.diagnosis.search.search_result import SearchResult
+from frictioncli.diagnosis.search.shown import shown_of
 from frictioncli.diagnosis.search.step import Step, free_coefficients
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
@@ -303,6 +304,6 @@ def _cause(
         test=own,
         effects=credible_set(share),
         probabilities={name: value for name, value in share.items() if value >= 1e-3},
-        shown=shown_share(step.precomputed, fit, others),
+        shown=shown_of(step.precomputed, fit, others),
         **sizes,
     )

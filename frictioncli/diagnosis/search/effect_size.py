@@ -8,7 +8,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, visible_size_of
+from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, visible_size_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.effects.base import Basis, Effect
 
@@ -80,30 +80,6 @@ def left_shares(known: Precomputed, torques: Sequence[Basis]) -> Array:
     whole = np.linalg.norm(np.vstack(together), axis=0)
     left = np.linalg.norm(left_by(known.span, together), axis=0)
     return np.asarray(np.divide(left, whole, where=whole > 0, out=np.zeros_like(whole)))
-
-
-def shown_share(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit]) -> float:
-    """Return what the residuals show of an effect at face value, as a share of it.
-
-    The coefficient of its torque by least squares beside base, measurement and other effects:
-    about 1, or less where discrepancy is to cancel the rest.
-
-    Parameters
-    ----------
-    known : Precomputed
-        The data.
-    fit : EffectFit
-        The effect.
-    others : sequence of EffectFit
-        The other effects.
-    """
-    problem = known.problem
-    bases = [problem.basis(one.effect, one.shape) for one in others]
-    span = span_of(problem, [*known.measurement, *bases])
-    torque = left_by(span, problem.basis(fit.effect, fit.shape)) @ fit.coefficients
-    misfit = np.concatenate([problem.friction_misfit, problem.load_misfit])
-    length = float(torque @ torque)
-    return float(misfit @ torque) / length if length > 0 else 1.0
 
 
 def elsewhere(known: Precomputed, fit: EffectFit) -> str:

@@ -22,6 +22,7 @@ from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structur
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
+from frictioncli.diagnosis.search.shown import shown_of
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.stated_size import sizes_beside_each_other
 from frictioncli.diagnosis.search.step import Step
@@ -93,7 +94,7 @@ class Judging:
         found : SearchResult
             What the search found.
         """
-        everything = (*found.measurement, *found.causes)
+        everything = (*_with_shown(found), *found.causes)
         # without a margin only what is doubtful for other reasons has no name
         at_all = with_standing(everything, self.problem, 0.0, self.alpha)
         possible = [
@@ -289,6 +290,22 @@ def _with(causes: Sequence[Cause], newer: Sequence[Cause]) -> tuple[Cause, ...]:
     """Return causes, some of them as they are now."""
     known = {one.fit.effect.name: one for one in newer}
     return tuple(known.get(one.fit.effect.name, one) for one in causes)
+
+
+def _with_shown(found: SearchResult) -> tuple[Cause, ...]:
+    """Return the effects of the measurement with what the residuals show of them."""
+    step, beside = found.step, found.measurement
+    return tuple(
+        replace(
+            one,
+            shown=shown_of(
+                step.precomputed,
+                one.fit,
+                [*step.accepted, *(other.fit for other in beside if other is not one)],
+            ),
+        )
+        for one in beside
+    )
 
 
 def _names(causes: Sequence[Cause]) -> set[str]:

@@ -27,6 +27,7 @@ from frictioncli.diagnosis.search.possible import (
     undetermined,
 )
 from frictioncli.effects.base import Effect
+from frictioncli.effects.position_ripple import EFFECT as POSITION_RIPPLE
 
 _OF_CHANGES = 0.02
 """Significance level of a change, relative to that of other effects: drift over a few dozen pairs
@@ -34,6 +35,15 @@ looks like a change at some moment or other much more often than p-values say.""
 
 _SHOWN = 0.5
 """Least share of a cause that the residuals show at face value."""
+
+_SHOWN_OF_MEASUREMENT = 0.25
+"""The same of an effect of the measurement, which stands there before what else the model lacks: of
+a delay beside structure along the angle they may show a half."""
+
+_TOO_FINE = (
+    "slower moves do not show it, and a ripple that is too fine for the samples of fast moves, or a"
+    " vibration, would look the same"
+)
 
 _CANCELLING = 0.5
 """Two causes cancel each other if their sum has less than this share of the smaller one's RMS."""
@@ -139,8 +149,11 @@ def _impossible(cause: Cause, problem: Problem) -> str:
         reason = impossible(cause.fit, problem) or undetermined(cause.fit, problem)
     if reason:
         return reason
-    if cause.shown < _SHOWN:
+    least = _SHOWN_OF_MEASUREMENT if cause.fit.effect.measurement else _SHOWN
+    if cause.shown.share < least:
         return "the residuals do not show an effect of this size"
+    if cause.fit.effect is POSITION_RIPPLE and cause.shown.slower < _SHOWN:
+        return _TOO_FINE
     if lies_on_bound(cause.fit):
         return ON_BOUND
     if len(errors) == 1 and abs(cause.fit.coefficients[0]) <= Z95 * errors[0]:
