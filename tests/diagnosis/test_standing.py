@@ -145,6 +145,14 @@ def test_what_the_residuals_do_not_show_has_no_name(joint, name, shown, expected
     assert ("show" in reason) == (expected != "named")
 
 
+def test_a_payload_that_one_direction_of_motion_has_is_not_determined(joint):
+    shape = {"moment": 0.3, "end": 1.0}
+    one = cause(BY_NAME["payload_change"], (3.0, 1.0), (0.1, 0.1), shape=shape)
+    assert standing(joint, one)[0][0] == "named"
+    ((found, reason),) = standing(joint, replace(one, shown=Shown(one_direction=True)))
+    assert (found, "one direction" in reason) == ("undetermined", True)
+
+
 def test_two_causes_that_cancel_are_not_both_named(joint):
     """One is the other's negative, but for a little: the weaker has no name."""
     against = effect("against", [(-1.0, A), (0.3, B)])

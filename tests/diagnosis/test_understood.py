@@ -11,9 +11,13 @@ from frictioncli.diagnosis.search.axis_columns import axis_columns
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import left_size
 from frictioncli.diagnosis.search.precomputed import Precomputed
-from frictioncli.diagnosis.search.shown import shown_of
+from frictioncli.diagnosis.search.shown import Shown, shown_of
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.understood import _is_form_of, is_part, understood
+from frictioncli.diagnosis.search.without_a_name import (
+    beyond_doubt_without_a_name,
+    change_over_time,
+)
 from frictioncli.effects import BY_NAME
 from tests.diagnosis.dense_noise import problem
 from tests.diagnosis.wave_effects import B, effect, wave
@@ -107,6 +111,52 @@ def test_a_delay_that_is_in_the_log_is_shown_beside_the_base():
     for one, share in ((late, 1.0), (data, 0.0)):
         known = Precomputed.of(one, (BY_NAME["torque_delay"],))
         assert shown_of(known, own, []).share == pytest.approx(share, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("friction", "expected"), [(0.0, False), (1.0, True), (-1.0, True), (0.3, False)]
+)
+def test_load_that_changes_with_an_equal_friction_changes_in_one_direction(friction, expected):
+    """On the second day, 3 N·m at 90 deg, and a share of it in friction."""
+
+    def more(rows):
+        return 3.0 * np.sin(np.radians(rows["position"])) * (rows["run"] == "day2")
+
+    data = problem(5, friction=lambda rows: friction * more(rows), load=more)
+    payload = BY_NAME["payload_change"]
+    shape = {"moment": 0.5, "end": 1.0}
+    own = EffectFit(payload, shape, np.array([0.0, 3.0]), np.diag([1e-4, 1e-4]), 1.0)
+    assert shown_of(Precomputed.of(data), own, []).one_direction is expected
+
+
+def test_another_scale_of_the_torque_changes_both_directions():
+    """Load and friction grow by 6 %; friction by more than half of that of the load."""
+
+    def more(column):
+        return lambda rows: 0.06 * rows[column] * (rows["run"] == "day2")
+
+    data = problem(5, friction=more("friction_torque"), load=more("load_torque"))
+    payload = BY_NAME["payload_change"]
+    shape = {"moment": 0.5, "end": 1.0}
+    own = Step.of(Precomputed.of(data), []).fitted(payload, shape)
+    assert not shown_of(Precomputed.of(data), own, []).one_direction
+
+
+def test_a_change_in_one_direction_that_is_beyond_doubt_is_structure_along_time():
+    _, cause = accepted(problem(3, friction=SHORT))
+    one = replace(
+        cause,
+        test=SimpleNamespace(p_value=1e-9, statistic=50.0),
+        standing="undetermined",
+        shown=Shown(one_direction=True),
+    )
+    low, _ = one.visible_interval
+    assert beyond_doubt_without_a_name([one], [], low / 2) == (one,)
+    assert not beyond_doubt_without_a_name([one], ["ripple"], low / 2)
+    assert not beyond_doubt_without_a_name([one], [], 2 * low)
+    structure = change_over_time([one])
+    assert (structure.axes, structure.size) == (("time",), one.visible)
+    assert change_over_time([replace(one, shown=Shown())]) is None
 
 
 def structure_of(size, *axes, channel="friction"):

@@ -29,6 +29,10 @@ from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing
 from frictioncli.diagnosis.search.torque_scale import with_torque_scale
 from frictioncli.diagnosis.search.understood import understood
+from frictioncli.diagnosis.search.without_a_name import (
+    beyond_doubt_without_a_name,
+    change_over_time,
+)
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 _UNCERTAIN = "its coefficient in the extended model may be zero"
@@ -190,8 +194,11 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
     rows = [judging.problem] if judging.new is None else [judging.problem, judging.new]
     scaled = with_torque_scale(judged.named, judged.found.step, rows)
     is_left = structure is not None and scaled.step is not judged.found.step
-    if is_left or (structure is None and _is_there(first, judged, judging.margin)):
+    there = beyond_doubt_without_a_name(first.causes, _names(judged.named), judging.margin)
+    if is_left or (structure is None and there):
         structure = unnamed_structure(scaled.step, judging.margin, judging.alpha)
+    if structure is None and not scaled.causes:
+        structure = change_over_time(there)
     return NamedCauses(
         causes=scaled.causes,
         others=(*others, *lost_on_the_way, *scaled.replaced),
@@ -199,23 +206,6 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
         measurement=judged.found.measurement,
         timing=judged.timing,
         step=scaled.step,
-    )
-
-
-def _is_there(first: JudgedCauses, judged: JudgedCauses, margin: float) -> bool:
-    """Return whether a property of the joint without a name is there beyond doubt.
-
-    It is physically impossible as an effect of the catalogue, or not determined, but it is not
-    nothing.
-    """
-    named = _names(judged.named)
-    return any(
-        one.standing == "undetermined"
-        and one.fit.effect.name not in named
-        and not one.fit.effect.measurement
-        and one.test.p_value < BEYOND_DOUBT
-        and one.visible_interval[0] > margin
-        for one in first.causes
     )
 
 

@@ -1,4 +1,4 @@
-"""What the residuals show of an effect at face value: of all of it, and at low speeds alone."""
+"""What the residuals show of an effect: of all of it, at low speeds, and in one direction."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of
 from frictioncli.diagnosis.search.precomputed import Precomputed
@@ -17,6 +18,12 @@ _FEW = 4
 _SLOWER = 0.95
 """Speeds up to this share of another one are lower: moves at one speed differ less."""
 
+_ONE_DIRECTION = 0.5
+"""Change of friction, relative to that of the load, from which it is in one direction only."""
+
+_IN_PROPORTION = 0.9
+"""Share of a change of the load, by its mean square, from which it is in proportion to the load."""
+
 
 class Shown(NamedTuple):
     """Shares of an effect that the residuals show.
@@ -27,10 +34,13 @@ class Shown(NamedTuple):
         Of all of it: about 1, or less where discrepancy is to cancel the rest.
     slower : float
         Of what it has at low speeds, at most (95 %); 1 where these are few.
+    one_direction : bool
+        Whether a change of the load is one of the torque in one direction of motion only.
     """
 
     share: float = 1.0
     slower: float = 1.0
+    one_direction: bool = False
 
 
 WHOLE = Shown()
@@ -60,6 +70,7 @@ def shown_of(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit]) ->
         beside += known.measurement
     misfit = Basis(problem.friction_misfit[:, np.newaxis], problem.load_misfit[:, np.newaxis])
     span = span_of(problem, beside)
+    one_direction = _in_one_direction(problem, fit, span)
     torque = left_by(span, problem.basis(fit.effect, fit.shape)) @ fit.coefficients
     if not torque.any():
         return WHOLE
@@ -68,10 +79,37 @@ def shown_of(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit]) ->
     seen, whole = (np.bincount(row_pair, weights=one).astype(float) for one in by_rows)
     share = float(seen.sum() / whole.sum())
     if share <= 0:
-        return Shown(share)
+        return Shown(share, one_direction=one_direction)
     speed = problem.layout.speed
     slow = speed < _SLOWER * float(seen @ speed) / float(seen.sum())
-    return Shown(share, _at_most(seen[slow], whole[slow]))
+    return Shown(share, _at_most(seen[slow], whole[slow]), one_direction)
+
+
+def _in_one_direction(problem: Problem, fit: EffectFit, span: Array) -> bool:
+    """Return whether a change of the load goes with one of friction that is at least half of it.
+
+    Torque in one direction of motion alone, as friction in the first move after a stop, adds half
+    of itself to both channels. Another scale of the torque changes both as well, but the load in
+    proportion to itself.
+    """
+    if fit.effect.moments is None or fit.effect.channel != "load" or problem.has_load_channel:
+        return False
+    friction, load = (one @ fit.coefficients for one in problem.basis(fit.effect, fit.shape))
+    scaled = (load != 0) * problem.table.load
+    nothing = np.zeros_like(load)
+    own, change, proportional, misfit = left_by(
+        span,
+        Basis(
+            np.column_stack([load, nothing, nothing, problem.friction_misfit - friction]),
+            np.column_stack([nothing, load, scaled, nothing]),
+        ),
+    ).T
+    if not own.any():
+        return False
+    in_friction = float(own @ misfit) / float(own @ own)
+    together = float(change @ proportional) ** 2
+    alike = together > _IN_PROPORTION * float(change @ change) * float(proportional @ proportional)
+    return abs(in_friction) > _ONE_DIRECTION and not alike
 
 
 def _at_most(seen: Array, whole: Array) -> float:

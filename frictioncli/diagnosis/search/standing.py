@@ -44,6 +44,10 @@ _TOO_FINE = (
     "slower moves do not show it, and a ripple that is too fine for the samples of fast moves, or a"
     " vibration, would look the same"
 )
+_ONE_DIRECTION = (
+    "friction changes as much, as by torque in one direction of motion only: a brake that drags"
+    " after a stop would look the same"
+)
 
 _CANCELLING = 0.5
 """Two causes cancel each other if their sum has less than this share of the smaller one's RMS."""
@@ -154,6 +158,8 @@ def _impossible(cause: Cause, problem: Problem) -> str:
         return "the residuals do not show an effect of this size"
     if cause.fit.effect is POSITION_RIPPLE and cause.shown.slower < _SHOWN:
         return _TOO_FINE
+    if cause.shown.one_direction:
+        return _ONE_DIRECTION
     if lies_on_bound(cause.fit):
         return ON_BOUND
     if len(errors) == 1 and abs(cause.fit.coefficients[0]) <= Z95 * errors[0]:
