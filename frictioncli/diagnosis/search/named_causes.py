@@ -98,7 +98,7 @@ class Judging:
         found : SearchResult
             What the search found.
         """
-        everything = (*_with_shown(found), *found.causes)
+        everything = (*_with_shown(found, self.alpha), *found.causes)
         # without a margin only what is doubtful for other reasons has no name
         at_all = with_standing(everything, self.problem, 0.0, self.alpha)
         possible = [
@@ -197,7 +197,7 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
     there = beyond_doubt_without_a_name(first.causes, _names(judged.named), judging.margin)
     if is_left or (structure is None and there):
         structure = unnamed_structure(scaled.step, judging.margin, judging.alpha)
-    if structure is None and not scaled.causes:
+    if structure is None and all(one.fit.effect.measurement for one in scaled.causes):
         structure = change_over_time(there)
     return NamedCauses(
         causes=scaled.causes,
@@ -282,8 +282,8 @@ def _with(causes: Sequence[Cause], newer: Sequence[Cause]) -> tuple[Cause, ...]:
     return tuple(known.get(one.fit.effect.name, one) for one in causes)
 
 
-def _with_shown(found: SearchResult) -> tuple[Cause, ...]:
-    """Return the effects of the measurement with what the residuals show of them."""
+def _with_shown(found: SearchResult, alpha: float) -> tuple[Cause, ...]:
+    """Return the effects of the measurement; of significant ones, with what the residuals show."""
     step, beside = found.step, found.measurement
     return tuple(
         replace(
@@ -294,6 +294,8 @@ def _with_shown(found: SearchResult) -> tuple[Cause, ...]:
                 [*step.accepted, *(other.fit for other in beside if other is not one)],
             ),
         )
+        if one.test.p_value < alpha
+        else one
         for one in beside
     )
 

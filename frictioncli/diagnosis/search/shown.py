@@ -114,7 +114,7 @@ def _in_one_direction(problem: Problem, fit: EffectFit, span: Array) -> bool:
 
 def _at_most(seen: Array, whole: Array) -> float:
     """Return the upper bound of a share whose parts are those of some pairs."""
-    if len(seen) < _FEW:
+    if len(seen) < _FEW or not whole.any():
         return 1.0
     share = seen.sum() / whole.sum()
     error = np.sqrt(np.sum(np.square(seen - share * whole))) / whole.sum()
