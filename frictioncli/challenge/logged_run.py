@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array, Flags, Indices
-from frictioncli.diagnosis.data.run_order import runs_in_order
+from frictioncli.logs.runs.run_order import runs_in_order
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

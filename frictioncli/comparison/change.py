@@ -18,8 +18,8 @@ import pandas as pd
 
 from frictioncli.arrays import Array
 from frictioncli.comparison.noise_averaged_fit import is_estimable, noise_averaged_fit
-from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.distributions import t_quantile
+from frictioncli.logs.runs.run_order import runs_in_order
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.equations import COEFFICIENTS, jacobian
 from frictioncli.model.identification import freedom, pair_equations, pair_residual

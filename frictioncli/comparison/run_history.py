@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.errors import NotEnoughData, OptionError
+from frictioncli.logs.runs.run_order import runs_in_order
 from frictioncli.model.document import FrictionModel
 from frictioncli.model.zero_load import temperature_of
 

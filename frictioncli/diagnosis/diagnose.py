@@ -13,7 +13,6 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.diagnosis.data.problem import Misfit, Problem
-from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.diagnosis.data.worst_misfits import worst_misfits
 from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
 from frictioncli.diagnosis.empirical.on_new_run import structure_on_new_run
@@ -46,6 +45,7 @@ from frictioncli.diagnosis.thermal.refine import LAG, settled
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
 from frictioncli.errors import NotEnoughData
+from frictioncli.logs.runs.run_order import runs_in_order
 
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.diagnosis.diagnose import LEAST_PAIRS as LEAST_TO_DIAGNOSE
 from frictioncli.errors import NotEnoughData
 from frictioncli.inspection.findings import JointInspection
 from frictioncli.inspection.pair_check import FORWARD, REVERSE
+from frictioncli.logs.runs.run_order import runs_in_order
 from frictioncli.model.fitting import LEAST_PAIRS as LEAST_TO_FIT
 from frictioncli.model.identifiability import MIN_SPEED_RATIO, MIN_TEMPERATURE_SPAN
 from frictioncli.model.settings import LEAST_OPPOSING, not_opposing

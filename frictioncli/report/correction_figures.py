@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.run_order import runs_in_order
+from frictioncli.logs.runs.run_order import runs_in_order
 from frictioncli.model.friction import friction_torque
 from frictioncli.report.labels import TEMPERATURE_SYMBOLS, figure_text, friction_label
 from frictioncli.report.panel import stacked

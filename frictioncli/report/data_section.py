@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from frictioncli.diagnosis.data.run_order import runs_in_order
+from frictioncli.logs.runs.run_order import runs_in_order
 from frictioncli.report.page_tables import TextTable
 from frictioncli.report.quality_ratings import IngestCounts
 from frictioncli.report.results import JointResults, WorkFolderResults

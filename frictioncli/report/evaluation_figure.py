@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frictioncli.diagnosis.data.run_order import runs_in_order
+from frictioncli.logs.runs.run_order import runs_in_order
 from frictioncli.report.labels import CRITERION_WORDS, figure_text
 from frictioncli.report.panel import name_ticks
 from frictioncli.report.results import MOST_RUNS, JointResults

@@ -10,10 +10,10 @@ import pandas as pd
 
 from frictioncli.arrays import Array
 from frictioncli.correction.settings import CorrectionSettings, ScheduleSettings
-from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.diagnosis.documents.apply_extension import without_effects
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.errors import NotEnoughData
+from frictioncli.logs.runs.run_order import runs_in_order
 from frictioncli.plain_text import without_control_characters
 from frictioncli.report.evaluation_figure import compared_criterion
 from frictioncli.report.grid_replay import ReplayedPhase, ScheduleGrid, replayed_phases

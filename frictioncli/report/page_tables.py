@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from frictioncli.diagnosis.data.run_order import runs_in_order
+from frictioncli.logs.runs.run_order import runs_in_order
 from frictioncli.report.evaluation_figure import compared_criterion
 from frictioncli.report.labels import CRITERION_WORDS
 from frictioncli.report.results import JointResults, by_speed

@@ -13,13 +13,13 @@ from frictioncli import schemas, tables
 from frictioncli.arrays import Array
 from frictioncli.challenge_schema import CHALLENGE
 from frictioncli.design.document import PlanDocument
-from frictioncli.diagnosis.data.run_order import runs_in_order
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_document import ExtendedDocument
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.diagnosis.documents.reload import Reloaded, is_current, read_documents, reload
 from frictioncli.errors import TableError
 from frictioncli.files import is_there
+from frictioncli.logs.runs.run_order import runs_in_order
 from frictioncli.model.document import FrictionModel, read_models
 from frictioncli.model.friction import friction_torque
 from frictioncli.model.late_torque import without_delay

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.run_order import runs_in_order
+from frictioncli.logs.runs.run_order import runs_in_order
 from frictioncli.model.paper_method import branch_means
 from frictioncli.report.labels import TEMPERATURE_LABELS, figure_text, friction_label
 from frictioncli.report.results import MOST_RUNS, JointResults, by_speed

@@ -29,11 +29,11 @@ from frictioncli.diagnosis.data.motion_history import (
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.pose_gravity import gravities_by_pose
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.data.run_order import sorted_rows
 from frictioncli.diagnosis.data.temperature_error import temperature_error
 from frictioncli.diagnosis.data.within_noise import WithinNoise
 from frictioncli.effects.base import EffectTable
 from frictioncli.effects.pair_series import rows_of
+from frictioncli.logs.runs.run_order import sorted_rows
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.zero_load import PAIR_KEY, temperature_of
