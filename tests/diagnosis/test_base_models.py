@@ -39,7 +39,7 @@ def grown_while_warmed(seed):
 
 
 def test_growth_hides_beta_from_the_fit_and_not_from_the_diagnosis():
-    problem = grown_while_warmed(1)
+    problem = grown_while_warmed(2)
     assert problem.parameters.beta == 0
     assert abs(problem.parameters.delta / TRUTH["delta"] - 1) > 0.3
     assert problem.names == ("tau_c", "alpha", "beta", "gamma", "delta")
