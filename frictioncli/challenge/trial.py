@@ -118,6 +118,35 @@ class Planter:
             seconds=time.process_time() - begin,
         )
 
+    def added_torque(self, name: str, seed: int, size: float) -> tuple[Array, Array, pd.DataFrame]:
+        """Return what an effect of a size adds to the pairs, without a diagnosis.
+
+        Parameters
+        ----------
+        name : str
+            The effect.
+        seed : int
+            Seed of its shape.
+        size : float
+            Its size. [unit of its channel]
+
+        Returns
+        -------
+        friction, load : ndarray, shape (rows,)
+            What it adds in each channel. [unit of the channel]
+        rows : DataFrame
+            Pairs and angle bins of the runs seen.
+
+        Raises
+        ------
+        NotEnoughData
+            If these data cannot show the effect in this size.
+        """
+        effect = drawn_effect(name, self.subject.scale, seed)
+        with self._folder() as folder:
+            self._sized(folder, effect, seed, size, near_turn=False, at_most=True)
+            return self._added(folder)
+
     def _sized(
         self,
         folder: Path,
