@@ -174,6 +174,34 @@ def _by_excitation(observed: Observations, least_span: float) -> Determination:
     return chosen
 
 
+def why_no_load_term(observed: Observations, estimate: Estimate) -> str:
+    """Return why the data do not determine alpha; empty if they do.
+
+    Parameters
+    ----------
+    observed : Observations
+        Friction of one joint.
+    estimate : Estimate
+        A fit to it; one without alpha does not determine it.
+    """
+    squares = observed.squared_load[observed.row_pair] + observed.squared_load_within
+    if "alpha" in estimate.names:
+        friction = float(np.mean(np.abs(observed.friction)))
+        low, high = estimate.interval_within("alpha")
+        vague = (high - low) / 2 * np.ptp(squares) > _VAGUE * friction
+        # a user will ask for loads at least as great as the friction
+        greatest = max(float(np.max(squares)), friction**2)
+        doubtful = low <= 0 and high * greatest > _NEGLIGIBLE * friction
+        # what noise of the size of a bin's makes of the square of a load
+        of_noise = _NOISY * float(np.mean(4.0 * squares)) * estimate.noise.point**2
+        if not (vague or doubtful or np.var(squares) <= of_noise):
+            return ""
+    return (
+        f"the magnitude of the load spans {np.sqrt(np.min(squares)):.3g} to"
+        f" {np.sqrt(np.max(squares)):.3g}, too little to show in the friction; left out (0)"
+    )
+
+
 def _by_interval(
     observed: Observations, estimate: Estimate, chosen: Determination, *, vague_delta: bool
 ) -> Determination:
@@ -189,24 +217,8 @@ def _by_interval(
         for name in estimate.names
         for low, high in [estimate.interval_within(name)]
     }
-    if "alpha" in chosen.terms:
-        squares = observed.squared_load[observed.row_pair] + observed.squared_load_within
-        low, high = estimate.interval_within("alpha")
-        vague = half_width["alpha"] * np.ptp(squares) > _VAGUE * friction
-        # a user will ask for loads at least as great as the friction
-        greatest = max(float(np.max(squares)), friction**2)
-        doubtful = low <= 0 and high * greatest > _NEGLIGIBLE * friction
-        # what noise of the size of a bin's makes of the square of a load
-        of_noise = _NOISY * float(np.mean(4.0 * squares)) * estimate.noise.point**2
-        if vague or doubtful or np.var(squares) <= of_noise:
-            return chosen.without(
-                "alpha",
-                f"the magnitude of the load spans {np.sqrt(np.min(squares)):.3g} to"
-                f" {np.sqrt(np.max(squares)):.3g}, too little to show in the friction; left out"
-                " (0)",
-                None,
-                "",
-            )
+    if "alpha" in chosen.terms and (reason := why_no_load_term(observed, estimate)):
+        return chosen.without("alpha", reason, None, "")
     if "delta" in half_width and half_width["delta"] >= estimate.parameters.delta:
         if "beta" in chosen.terms:
             return chosen.without(

@@ -22,7 +22,7 @@ from frictioncli.arrays import Array
 from frictioncli.errors import NotEnoughData
 from frictioncli.model.equations import COEFFICIENTS, Equations, jacobian
 from frictioncli.model.friction import FrictionParameters, friction_torque
-from frictioncli.model.identifiability import Determination
+from frictioncli.model.identifiability import Determination, why_no_load_term
 from frictioncli.model.identification import (
     Estimate,
     freedom,
@@ -49,6 +49,9 @@ _REPETITIONS = 200
 """Bootstrap samples."""
 
 _SEED = 0
+
+_WITHOUT_LOAD = tuple(one for one in COEFFICIENTS if one != "alpha")
+"""Terms that are fitted where the load does not vary."""
 
 
 def branch_means(pairs: pd.DataFrame, temperature: str = "mean") -> pd.DataFrame:
@@ -152,30 +155,40 @@ def consecutive_fit(
     NotEnoughData
         If no two speeds have both a heating and a cooling branch.
     """
-    alpha = load_coefficient(observed)
+    terms = COEFFICIENTS if observed.load_contrast > 0 else _WITHOUT_LOAD
+    estimate = _consecutive_fit(torques, observed, temperature, terms)
+    reason = why_no_load_term(observed, estimate)
+    if not reason:
+        return estimate, Determination()
+    if "alpha" in terms:
+        estimate = _consecutive_fit(torques, observed, temperature, _WITHOUT_LOAD)
+    return estimate, Determination().without("alpha", reason, None, "")
+
+
+def _consecutive_fit(
+    torques: pd.DataFrame, observed: Observations, temperature: str, terms: tuple[str, ...]
+) -> Estimate:
+    """Identify some terms of equation (16) as the source paper does; without alpha it is 0."""
+    alpha = load_coefficient(observed) if "alpha" in terms else 0.0
     pairs = friction_at_zero_load(torques, alpha)
     means = _branch_weights(pairs, temperature)
     parameters = _viscous_law(means, pairs["friction_torque"].to_numpy(float), alpha)
     residual = pair_residual(observed, parameters)
-    names = (*COEFFICIENTS, "delta")
+    names = (*terms, "delta")
     point = point_noise(observed, alpha)
     plausible, shares = noise_of_pairs(
-        observed, COEFFICIENTS, parameters, np.full(len(COEFFICIENTS), FIRST_SHARE)
+        observed, terms, parameters, np.full(len(terms), FIRST_SHARE)
     )
-    spread = shares * [getattr(parameters, term) for term in COEFFICIENTS]
-    columns = jacobian(pair_equations(observed), COEFFICIENTS, parameters)[:, :-1]
+    spread = shares * [getattr(parameters, term) for term in terms]
+    columns = jacobian(pair_equations(observed), terms, parameters)[:, :-1]
     starts = run_starts(observed.run)
     pairs_of_run = np.diff(np.append(starts, len(observed.run)))
-    of_load = contrast_by_run(observed) / max(observed.load_contrast, 1e-300)
     generator = np.random.default_rng(_SEED)
     covariances = [
         pair_covariance(noise, time=observed.time, run=observed.run, bins=observed.bins)
         for noise, _ in plausible
     ]
     choices = generator.choice(len(plausible), _REPETITIONS, p=[weight for _, weight in plausible])
-    alpha_error = point * np.sqrt(
-        contrast_inflation(observed, alpha, point) / max(observed.load_contrast, 1e-300)
-    )
     unloaded = friction_torque(
         parameters,
         load=0.0,
@@ -183,12 +196,18 @@ def consecutive_fit(
         temperature=temperature_of(pairs, temperature).to_numpy(float),
     )
     of_runs = np.random.default_rng([_SEED, 1]).standard_normal(
-        (_REPETITIONS, len(starts), len(COEFFICIENTS))
+        (_REPETITIONS, len(starts), len(terms))
     )
+    load = np.array([term == "alpha" for term in terms])
+    deviation, of_load = 0.0, np.zeros(len(starts))
+    if load.any():
+        contrast = observed.load_contrast
+        deviation = point * np.sqrt(contrast_inflation(observed, alpha, point) / contrast)
+        of_load = contrast_by_run(observed) / contrast
     repeated = []
     for choice, differences in zip(choices, of_runs * spread, strict=True):
-        shift = alpha_error * generator.standard_normal()
-        shift += of_load @ differences[:, COEFFICIENTS.index("alpha")]
+        shift = deviation * generator.standard_normal()
+        shift += float(np.sum(of_load @ differences[:, load]))
         disturbance = covariances[choice].draw(generator) - shift * observed.squared_load
         disturbance += np.sum(columns * np.repeat(differences, pairs_of_run, axis=0), axis=1)
         again = _viscous_law(means, unloaded + disturbance, alpha + shift)
@@ -196,7 +215,7 @@ def consecutive_fit(
     within = observed.friction_within - alpha * observed.squared_load_within
     squares = np.sum(observed.bins * np.square(residual)) + within @ within
     covariance = np.cov(np.array(repeated).T)
-    estimate = Estimate(
+    return Estimate(
         parameters=parameters,
         names=names,
         covariance=covariance,
@@ -206,7 +225,6 @@ def consecutive_fit(
         residual=residual,
         rmse=float(np.sqrt(squares / len(within))),
     )
-    return estimate, Determination()
 
 
 def _viscous_law(means: _BranchMeans, friction: Array, alpha: float) -> FrictionParameters:

@@ -185,6 +185,22 @@ def test_paper_method_needs_both_branches():
         fitted(table[table["phase"] == "heat-up"], method="paper")
 
 
+@pytest.mark.parametrize("load", [0.0, 40.0, 0.1])
+@pytest.mark.parametrize("method", ["joint", "paper"])
+def test_an_axis_without_gravity_has_no_load_term(method, load):
+    """A load of 0 or 40 N·m in all rows, or noise of 0.1 N·m, does not tell alpha."""
+    table = torques(7, truth=TRUTH | {"alpha": 0.0})
+    noise = np.random.default_rng(7).normal(0.0, load, len(table)) if load == 0.1 else load
+    model = fitted(table.assign(load_torque=noise), method=method)
+    alpha = model.parameters["alpha"]
+    assert (alpha.estimate, alpha.ci95, alpha.determined) == (0.0, None, False)
+    assert "the magnitude of the load spans" in alpha.reason
+    for name in ("tau_c", "beta", "gamma", "delta"):
+        low, high = model.parameters[name].ci95
+        assert low < TRUTH[name] < high
+        assert high - low < TRUTH[name]
+
+
 def test_missing_housing_temperature_is_named():
     table = torques(9).assign(housing_temperature=np.nan)
     with pytest.raises(NotEnoughData, match="housing_temperature"):
