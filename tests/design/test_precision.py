@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from frictioncli.design.precision import response_surface_log_determinants
+from frictioncli.effects.pair_series import rows_of
 from tests.design.examples import few_pairs
 
 
@@ -15,9 +16,7 @@ def problem():
 def test_coverage_is_the_determinant_of_a_quadratic(problem):
     """By hand: inputs of a table, scaled to -1 ... 1, with squares and products."""
     table = problem.table
-    half = type(table)(
-        **{name: getattr(table, name)[table.time < 600.0] for name in type(table).__slots__}
-    )
+    half = rows_of(table, table.time < 600.0)
     low, high = response_surface_log_determinants([half, table])
     rest = np.log1p(np.minimum(table.rest, 43200.0))
     inputs = [np.sqrt(table.speed), table.temperature, table.position, table.load]
