@@ -11,7 +11,7 @@ from frictioncli.diagnosis.search.axis_columns import axis_columns
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import left_size
 from frictioncli.diagnosis.search.precomputed import Precomputed
-from frictioncli.diagnosis.search.shown import Shown, shown_of
+from frictioncli.diagnosis.search.shown import Shown, shown_by_residuals
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.understood import _is_form_of, is_part, understood
 from frictioncli.diagnosis.search.without_a_name import (
@@ -80,7 +80,7 @@ def test_the_residuals_show_a_share_of_a_cause_at_face_value(share):
     precomputed = Precomputed.of(data)
     own = EffectFit(RIPPLE, {}, np.array([2.0]), np.array([[1e-4]]), 1.0)
     other = EffectFit(effect("other", [(1.0, B)]), {}, np.array([3.0]), np.array([[1e-4]]), 1.0)
-    assert shown_of(precomputed, own, [other]).share == pytest.approx(share, abs=0.05)
+    assert shown_by_residuals(precomputed, own, [other]).share == pytest.approx(share, abs=0.05)
 
 
 @pytest.mark.parametrize(("fastest_alone", "slower"), [(False, 1.0), (True, 0.0)])
@@ -93,7 +93,7 @@ def test_slower_moves_show_a_ripple_unless_fast_ones_alone_have_it(fastest_alone
 
     precomputed = Precomputed.of(problem(5, friction=ripple))
     own = EffectFit(RIPPLE, {}, np.array([2.0]), np.array([[1e-4]]), 1.0)
-    shown = shown_of(precomputed, own, [])
+    shown = shown_by_residuals(precomputed, own, [])
     assert shown.share == pytest.approx(1.0, abs=0.05)
     assert shown.slower == pytest.approx(slower, abs=0.1)
 
@@ -110,7 +110,7 @@ def test_a_delay_that_is_in_the_log_is_shown_beside_the_base():
     own = EffectFit(BY_NAME["torque_delay"], {}, np.array([0.02]), np.array([[1e-8]]), 1.0)
     for one, share in ((late, 1.0), (data, 0.0)):
         known = Precomputed.of(one, (BY_NAME["torque_delay"],))
-        assert shown_of(known, own, []).share == pytest.approx(share, abs=0.1)
+        assert shown_by_residuals(known, own, []).share == pytest.approx(share, abs=0.1)
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def test_load_that_changes_with_an_equal_friction_changes_in_one_direction(frict
     payload = BY_NAME["payload_change"]
     shape = {"moment": 0.5, "end": 1.0}
     own = EffectFit(payload, shape, np.array([0.0, 3.0]), np.diag([1e-4, 1e-4]), 1.0)
-    assert shown_of(Precomputed.of(data), own, []).one_direction is expected
+    assert shown_by_residuals(Precomputed.of(data), own, []).one_direction is expected
 
 
 def test_another_scale_of_the_torque_changes_both_directions():
@@ -139,7 +139,7 @@ def test_another_scale_of_the_torque_changes_both_directions():
     payload = BY_NAME["payload_change"]
     shape = {"moment": 0.5, "end": 1.0}
     own = Step.of(Precomputed.of(data), []).fitted(payload, shape)
-    assert not shown_of(Precomputed.of(data), own, []).one_direction
+    assert not shown_by_residuals(Precomputed.of(data), own, []).one_direction
 
 
 def test_a_change_in_one_direction_that_is_beyond_doubt_is_structure_along_time():

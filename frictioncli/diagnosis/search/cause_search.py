@@ -31,7 +31,7 @@ from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.rivals import CLEARLY, likeliest, rival_log_bayes_factors
 from frictioncli.diagnosis.search.search_result import SearchResult
-from frictioncli.diagnosis.search.shown import shown_of
+from frictioncli.diagnosis.search.shown import shown_by_residuals
 from frictioncli.diagnosis.search.step import Step, free_coefficients
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
@@ -304,6 +304,6 @@ def _cause(
         test=own,
         effects=credible_set(share),
         probabilities={name: value for name, value in share.items() if value >= 1e-3},
-        shown=shown_of(step.precomputed, fit, others),
+        shown=shown_by_residuals(step.precomputed, fit, others),
         **sizes,
     )

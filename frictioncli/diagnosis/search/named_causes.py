@@ -22,7 +22,7 @@ from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structur
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
-from frictioncli.diagnosis.search.shown import shown_of
+from frictioncli.diagnosis.search.shown import shown_by_residuals
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.stated_size import sizes_beside_each_other
 from frictioncli.diagnosis.search.step import Step
@@ -288,7 +288,7 @@ def _with_shown(found: SearchResult, alpha: float) -> tuple[Cause, ...]:
     return tuple(
         replace(
             one,
-            shown=shown_of(
+            shown=shown_by_residuals(
                 step.precomputed,
                 one.fit,
                 [*step.accepted, *(other.fit for other in beside if other is not one)],

@@ -47,7 +47,7 @@ WHOLE = Shown()
 """The residuals show all of it."""
 
 
-def shown_of(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit]) -> Shown:
+def shown_by_residuals(known: Precomputed, fit: EffectFit, others: Sequence[EffectFit]) -> Shown:
     """Return what the residuals show of an effect at face value.
 
     The coefficient of its torque by least squares beside base, measurement and other effects. Low
