@@ -21,6 +21,17 @@ LEAST_DRIFT = 1e-9
 """Least variance of the drift, relative to the mean of what is independent between pairs."""
 
 
+def run_starts(run: Indices) -> Indices:
+    """Return where each run begins, shape (runs,).
+
+    Parameters
+    ----------
+    run : ndarray of int, shape (pairs,)
+        Run of each pair; pairs of a run stand together.
+    """
+    return np.flatnonzero(np.diff(run, prepend=run[0] - 1))
+
+
 @dataclass(frozen=True, slots=True)
 class Drift:
     """Drift of variance 1 with one correlation time: its tridiagonal precision.

@@ -18,6 +18,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.distributions import t_quantile
+from frictioncli.model.drift import run_starts
 from frictioncli.model.equations import Equations, jacobian
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.load_contrast import (
@@ -29,7 +30,7 @@ from frictioncli.model.load_contrast import (
 )
 from frictioncli.model.noise import Noise, pair_covariance
 from frictioncli.model.observations import Observations
-from frictioncli.model.run_differences import FIRST_SHARE, noise_and_differences, run_starts
+from frictioncli.model.run_differences import FIRST_SHARE, noise_and_differences
 from frictioncli.model.variable_projection import minimise
 
 _ROUNDS = 2
@@ -102,10 +103,7 @@ def fit_terms(observed: Observations, terms: tuple[str, ...]) -> Estimate:
         residual = pair_residual(observed, parameters)
         plausible, shares = noise_of_pairs(observed, terms, parameters, shares)
         noise = plausible[0][0]
-    covariance, within_runs = (
-        _covariance(observed, terms, parameters, plausible, differences)
-        for differences in (shares, np.zeros(len(terms)))
-    )
+    covariance, within_runs = _covariances(observed, terms, parameters, plausible, shares)
     within = observed.friction_within - parameters.alpha * observed.squared_load_within
     rows = len(within)
     squares = np.sum(observed.bins * np.square(residual)) + within @ within
@@ -256,14 +254,17 @@ def _first_noise(observed: Observations, terms: tuple[str, ...]) -> Noise:
     return Noise(point=point, pair=point, drift=point, drift_time=3600.0)
 
 
-def _covariance(
+def _covariances(
     observed: Observations,
     terms: tuple[str, ...],
     parameters: FrictionParameters,
     plausible: list[tuple[Noise, float]],
     shares: Array,
-) -> Array:
-    """Return the covariance of the weighted estimates, averaged over the plausible noises."""
+) -> tuple[Array, Array]:
+    """Return the covariance of the weighted estimates, averaged over the plausible noises.
+
+    With differences between runs by some shares of the coefficients, and by the noise alone.
+    """
     noise = plausible[0][0]
     weighted = jacobian(weighted_equations(observed, noise), terms, parameters)
     size = np.maximum(np.linalg.norm(weighted, axis=0), 1e-300)
@@ -274,6 +275,7 @@ def _covariance(
     for possible, weight in plausible:
         truth = pair_covariance(possible, time=observed.time, run=observed.run, bins=observed.bins)
         meat += weight * (scaled.T @ truth.times(scaled))
+    noise_alone = meat.copy()
     starts = run_starts(observed.run)
     of_load = contrast_by_run(observed) / max(observed.load_contrast, 1e-300)
     for number, (term, share) in enumerate(zip(terms, shares.tolist(), strict=True)):
@@ -284,8 +286,13 @@ def _covariance(
         meat += spread**2 * moved.T @ moved
     bread = np.linalg.pinv(between.T @ between + np.outer(within, within))
     scale = np.outer(size, size)
-    # the column of delta is zero where gamma is
-    return np.divide(bread @ meat @ bread, scale, out=np.full_like(scale, np.nan), where=scale > 0)
+
+    def of_estimates(meat: Array) -> Array:
+        # the column of delta is zero where gamma is
+        unknown = np.full_like(scale, np.nan)
+        return np.divide(bread @ meat @ bread, scale, out=unknown, where=scale > 0)
+
+    return of_estimates(meat), of_estimates(noise_alone)
 
 
 def freedom(observed: Observations, noise: Noise, parameters: int) -> float:

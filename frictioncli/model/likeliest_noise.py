@@ -28,7 +28,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from frictioncli.arrays import Array, Indices
-from frictioncli.model.drift import LEAST_DRIFT, Drift, inverse_diagonal, posterior_factor, solved
+from frictioncli.model.drift import (
+    LEAST_DRIFT,
+    Drift,
+    inverse_diagonal,
+    posterior_factor,
+    run_starts,
+    solved,
+)
 
 _FARTHEST = 2.0
 """Greatest change of a logarithm in one round."""
@@ -201,9 +208,8 @@ class NoiseLikelihood:
 
     def _by_run(self, columns: Array) -> Array:
         """Return the products of what runs share with columns, shape (..., runs, components)."""
-        starts = np.flatnonzero(np.diff(self.run, prepend=-1))
         products = columns[..., np.newaxis, :] * self.shared
-        return np.add.reduceat(products, starts, axis=-1).swapaxes(-1, -2)
+        return np.add.reduceat(products, run_starts(self.run), axis=-1).swapaxes(-1, -2)
 
 
 def likeliest(

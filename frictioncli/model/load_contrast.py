@@ -6,8 +6,9 @@ Within a pair only the load varies, so that alpha is the slope of friction over 
 import numpy as np
 
 from frictioncli.arrays import Array
+from frictioncli.model.drift import run_starts
 from frictioncli.model.observations import Observations
-from frictioncli.model.run_differences import difference_of_estimates, run_starts
+from frictioncli.model.run_differences import difference_of_estimates
 
 
 def load_coefficient(observed: Observations) -> float:

@@ -20,6 +20,7 @@ import pandas as pd
 
 from frictioncli.arrays import Array
 from frictioncli.errors import NotEnoughData
+from frictioncli.model.drift import run_starts
 from frictioncli.model.equations import COEFFICIENTS, Equations, jacobian
 from frictioncli.model.friction import FrictionParameters, friction_torque
 from frictioncli.model.identifiability import Determination, why_no_load_term
@@ -38,7 +39,7 @@ from frictioncli.model.load_contrast import (
 )
 from frictioncli.model.noise import pair_covariance
 from frictioncli.model.observations import Observations
-from frictioncli.model.run_differences import FIRST_SHARE, run_starts
+from frictioncli.model.run_differences import FIRST_SHARE
 from frictioncli.model.variable_projection import minimise
 from frictioncli.model.zero_load import friction_at_zero_load, temperature_of
 

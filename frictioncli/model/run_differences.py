@@ -20,6 +20,7 @@ References
 import numpy as np
 
 from frictioncli.arrays import Array, Indices
+from frictioncli.model.drift import run_starts
 from frictioncli.model.noise import (
     Noise,
     orthonormal_basis,
@@ -38,17 +39,6 @@ FIRST_SHARE = 0.01
 
 _LEAST_WEIGHT = 1e-4
 """Noises less plausible than this are left out."""
-
-
-def run_starts(run: Indices) -> Indices:
-    """Return where each run begins, shape (runs,).
-
-    Parameters
-    ----------
-    run : ndarray of int, shape (pairs,)
-        Run of each pair; pairs of a run stand together.
-    """
-    return np.flatnonzero(np.diff(run, prepend=run[0] - 1))
 
 
 def noise_and_differences(
