@@ -6,7 +6,8 @@ of the true temperature,
 .. math:: \Delta\tau = \frac{\partial\tau}{\partial T}\, \theta_s\, \dot T,
 
 lower while heating and higher while cooling than the reading tells. The slope :math:`\dot T` is
-that of a line through the readings of ten minutes.
+that of a line through the readings of four minutes; where a pause leaves no others, through a pair
+and its neighbours.
 """
 
 import numpy as np
@@ -16,8 +17,13 @@ from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, fric
 from frictioncli.effects.pair_series import pair_heads, starts
 from frictioncli.effects.parameter import Parameter
 
-_HALF_WINDOW = 300.0
+_HALF_WINDOW = 120.0
 """Half the window of the line through the readings. [s]"""
+
+
+_LEAST_PAIRS = 3
+"""Least number of pairs in the window. A line across a pause, in which the joint may have warmed by
+many degrees, tells nothing of the slope at its ends."""
 
 
 def basis(table: EffectTable) -> Basis:
@@ -35,10 +41,11 @@ def basis(table: EffectTable) -> Basis:
 def _slopes(time: Array, value: Array) -> Array:
     """Return the slope of the line through the values around each time, 0 where there is none."""
     pairs = np.arange(len(time))
-    # a pair and its neighbours at least, however long the pause between them
-    low = np.minimum(np.searchsorted(time, time - _HALF_WINDOW, side="left"), pairs - 1)
-    high = np.maximum(np.searchsorted(time, time + _HALF_WINDOW, side="right"), pairs + 2)
-    low, high = np.maximum(low, 0), np.minimum(high, len(time))
+    low = np.searchsorted(time, time - _HALF_WINDOW, side="left")
+    high = np.searchsorted(time, time + _HALF_WINDOW, side="right")
+    few = high - low < _LEAST_PAIRS
+    low = np.maximum(np.where(few, np.minimum(low, pairs - 1), low), 0)
+    high = np.minimum(np.where(few, np.maximum(high, pairs + 2), high), len(time))
     count = high - low
     moved, raised = time - time.mean(), value - value.mean()
 

@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from frictioncli import schemas, tables
@@ -9,6 +10,7 @@ from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal import lag_search
 from frictioncli.effects import EFFECTS, MEASUREMENT_EFFECTS
+from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
 from frictioncli.workfiles import TORQUES
 from tests.diagnosis.thermal_joint import Network, torques
 
@@ -108,13 +110,13 @@ def test_a_drift_does_not_hide_a_lag_of_many_degrees(sample_run, tmp_path):
     assert diagnosis.gain.after < 1.5 * diagnosis.floor
 
 
-def lags(interval, *others, sensor=(0.0, 0.1)):
-    """Return a search that finds a lag of so much, and the lag of a sensor beside the base."""
-    result = found("thermal_lag", *others)
-    result.causes[0].visible_interval = interval
-    result.causes[0].visible = sum(interval) / 2
-    name = SimpleNamespace(effect=SimpleNamespace(name="sensor_lag"))
-    result.measurement = [SimpleNamespace(fit=name, visible_interval=sensor)]
+def lags(interval=None, sensor=(0.0, 0.1), late=60.0):
+    """Return a search that may find a lag of so much, and the lag of a sensor beside the base."""
+    result = found() if interval is None else found("thermal_lag")
+    for cause in result.causes:
+        cause.visible_interval, cause.visible = interval, sum(interval) / 2
+    fit = SimpleNamespace(effect=SENSOR_LAG, coefficients=[late], covariance=np.array([[100.0]]))
+    result.measurement = [SimpleNamespace(fit=fit, visible_interval=sensor)]
     return result
 
 
@@ -125,8 +127,19 @@ def lags(interval, *others, sensor=(0.0, 0.1)):
         (lags((0.1, 0.3)), lags((0.5, 0.7)), FIRST, "without"),
         (lags((0.1, 0.3)), lags((0.15, 0.3)), FIRST, "beside"),
         (lags((0.1, 0.3)), lags((0.5, 0.7)), None, "beside"),
+        (lags(), None, FIRST, "beside"),
+        (lags(sensor=(0.4, 0.6)), lags((0.5, 0.7)), FIRST, "without"),
+        (lags(sensor=(0.4, 0.6)), lags((0.1, 0.3)), FIRST, "beside"),
     ],
-    ids=["clear beside the sensor", "clear without it", "clear never", "no hidden temperature"],
+    ids=[
+        "clear beside the sensor",
+        "clear without it",
+        "clear never",
+        "no hidden temperature",
+        "none, and hardly a sensor",
+        "a clear sensor instead",
+        "a clear sensor alone",
+    ],
 )
 def test_the_lag_of_a_sensor_is_left_out_only_where_it_hides_one_of_the_gear(
     monkeypatch, beside, without, estimate, expected
@@ -153,7 +166,14 @@ def test_the_lag_of_a_sensor_is_left_out_only_where_it_hides_one_of_the_gear(
 
 
 @pytest.mark.parametrize(
-    ("interval", "expected"), [((0.1, 0.3), 0.5), ((0.0, 0.05), 0.0), ((0.4, 0.6), 0.95)]
+    ("interval", "expected"), [((0.1, 0.3), 0.5), ((0.0, 0.05), 0.5), ((0.4, 0.6), 0.95)]
 )
 def test_the_share_of_the_gear_is_that_with_which_it_is_worth_a_name(interval, expected):
     assert lag_search._share_of_lag(lags(interval), 0.2) == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize(("late", "expected"), [(60.0, 0.5), (100.0, 0.8413), (160.0, 0.95)])
+def test_a_sensor_that_lags_by_minutes_is_more_probably_the_gear(late, expected):
+    """With an error of 10 s; up to 90 s a sensor in a winding may lag."""
+    (sensor,) = lags(late=late).measurement
+    assert lag_search._share_beyond(sensor) == pytest.approx(expected, abs=1e-4)

@@ -134,6 +134,17 @@ def test_a_late_sensor_shows_the_slope_of_a_steady_warming():
     assert column[len(time) :] == pytest.approx(0.0025)
 
 
+def test_warming_in_a_pause_is_no_slope_of_the_pairs_before_and_after_it():
+    """In a pause of ten minutes the joint warms by 12 °C, which the pairs beside it do not show."""
+    series = np.arange(0.0, 400.0, 20.0)
+    time = np.concatenate([series, series + 980.0])
+    temperature = np.concatenate([25.0 + 0.001 * series, 37.0 + 0.01 * series])
+    rows = small(time=time, temperature=temperature, temperature_slope=-2.0)
+    column = sensor_lag(rows).friction[:, 0]
+    assert column[: len(series)] == pytest.approx(-0.002)
+    assert column[len(series) :] == pytest.approx(-0.02)
+
+
 def test_a_single_pair_has_no_slope_of_temperature():
     rows = small(run=[0, 1, 1], time=[0.0, 0.0, 60.0], temperature=[30.0, 30.0, 36.0])
     assert sensor_lag(rows).friction[:, 0] == pytest.approx([0.0, 0.1, 0.1])
