@@ -15,8 +15,9 @@ Up to two forms (:mod:`frictioncli.diagnosis.empirical.forms`) describe it, one 
 each judged on what the former leaves, beside the discrepancy that any model has. Each must explain
 more than that size of the blocks kept out, and show in every part of the pairs alone; together they
 must explain most of what the free functions do, and predict the blocks as well. Otherwise, or where
-another form may be there instead that is nearly as likely, the term has no form. A form that
-explains too little of the blocks makes way for the next.
+another form may be there instead that is nearly as likely, or the data cannot show it
+(:mod:`frictioncli.diagnosis.empirical.resolved`), the term has no form. A form that explains too
+little of the blocks makes way for the next.
 
 A form is evidence beyond that discrepancy, also where the data do not tell which of several of one
 quantity it is. Free functions are not: any joint has some, which recur on every run. Without a form
@@ -49,6 +50,7 @@ from frictioncli.diagnosis.empirical.random_functions import (
     function_of_form,
     functions_of,
 )
+from frictioncli.diagnosis.empirical.resolved import is_resolved
 from frictioncli.diagnosis.empirical.term import EmpiricalTerm, ranges_seen
 from frictioncli.diagnosis.fit.extension import Extension, misfits
 from frictioncli.diagnosis.fit.gain import Gain
@@ -189,7 +191,8 @@ def empirical_term(
         is_worse = is_worse or found.is_widest or not recurs(more)
         is_most = explained(alone) >= _MOST_OF_IT * explained(free.gain)
         evident = evident or (is_most and not is_worse)
-        if not found.leads:
+        is_told = found.leads and all(is_resolved(one, problem) for one in more.term().forms)
+        if not is_told:
             break
         if is_worse:
             candidates.remove(replace(found.form, since=0))
