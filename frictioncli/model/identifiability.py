@@ -192,14 +192,28 @@ def why_no_load_term(observed: Observations, estimate: Estimate) -> str:
         # a user will ask for loads at least as great as the friction
         greatest = max(float(np.max(squares)), friction**2)
         doubtful = low <= 0 and high * greatest > _NEGLIGIBLE * friction
-        # what noise of the size of a bin's makes of the square of a load
-        of_noise = _NOISY * float(np.mean(4.0 * squares)) * estimate.noise.point**2
-        if not (vague or doubtful or np.var(squares) <= of_noise):
+        if load_varies(observed, estimate) and not (vague or doubtful):
             return ""
     return (
         f"the magnitude of the load spans {np.sqrt(np.min(squares)):.3g} to"
         f" {np.sqrt(np.max(squares)):.3g}, too little to show in the friction; left out (0)"
     )
+
+
+def load_varies(observed: Observations, estimate: Estimate) -> bool:
+    """Return whether the square of the load varies by more than noise makes of it.
+
+    Parameters
+    ----------
+    observed : Observations
+        Friction of one joint.
+    estimate : Estimate
+        A fit to it.
+    """
+    squares = observed.squared_load[observed.row_pair] + observed.squared_load_within
+    # what noise of the size of a bin's makes of the square of a load
+    of_noise = _NOISY * float(np.mean(4.0 * squares)) * estimate.noise.point**2
+    return bool(np.var(squares) > of_noise)
 
 
 def _by_interval(

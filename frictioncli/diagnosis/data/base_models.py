@@ -8,7 +8,7 @@ import pandas as pd
 from frictioncli.diagnosis.data.pair_layout import speed_level
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import FrictionParameters
-from frictioncli.model.identifiability import determined_fit
+from frictioncli.model.identifiability import determined_fit, load_varies
 from frictioncli.model.observations import observations
 from frictioncli.model.zero_load import PAIR_KEY
 
@@ -64,6 +64,11 @@ def candidate_bases(rows: pd.DataFrame, temperature: str) -> list[Base]:
 
 
 def _base(rows: pd.DataFrame, temperature: str) -> Base:
-    estimate, _ = determined_fit(observations(rows, temperature), vague_delta=True)
-    free = {*estimate.names, "beta"} if "gamma" in estimate.names else set(estimate.names)
+    observed = observations(rows, temperature)
+    estimate, _ = determined_fit(observed, vague_delta=True)
+    free = set(estimate.names)
+    if "gamma" in free:
+        free.add("beta")
+    if load_varies(observed, estimate):
+        free.add("alpha")
     return Base(estimate.parameters, tuple(name for name in PARAMETERS if name in free))
