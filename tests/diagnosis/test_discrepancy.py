@@ -110,21 +110,19 @@ def test_functions_depend_on_their_axes_and_on_the_base_alone(joint):
         np.testing.assert_allclose(columns, fitted, atol=1e-5)
 
 
-def test_what_is_finer_than_a_smooth_function_has_an_amplitude_of_its_own(joint):
+@pytest.mark.parametrize("channel", ["friction", "load"])
+def test_what_is_finer_than_a_smooth_function_has_an_amplitude_of_its_own(joint, channel):
     """A wave of order 20.5 over the stroke, of which the smooth one has nearly nothing."""
     position = joint.table.position
     angle, place = np.unique(position, return_inverse=True)
     smooth = smooth_of(joint)
-    (one,) = (one for one in smooth.components if one.axes == FINE)
+    by_place = {(one.axes, one.channel): one for one in smooth.components}
+    one, alone = by_place[FINE, channel], by_place[("position",), channel]
     wave = np.cos(20.5 * np.pi * (angle - angle[0]) / np.ptp(angle))[place]
-    torque = np.concatenate([wave, np.zeros(len(wave))])
+    in_order = (wave, 0.0 * wave) if channel == "friction" else (0.0 * wave, wave)
+    torque = np.concatenate(in_order)
     span, own = span_of(joint), orthogonal(smooth)[:, one.columns]
     torque -= span @ (span.T @ torque)
-    (alone,) = (
-        part
-        for part in smooth.components
-        if (part.axes, part.channel) == (("position",), "friction")
-    )
     left = [
         np.linalg.norm(torque - columns @ np.linalg.lstsq(columns, torque, rcond=None)[0])
         for columns in (own, orthogonal(smooth)[:, alone.columns])

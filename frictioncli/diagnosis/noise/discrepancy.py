@@ -10,9 +10,9 @@ over the range of its quantity, with :math:`s_k` falling with *k*, so that it is
 coefficients of the base model are free, so that only the part of a function that is orthogonal to
 the base counts [2]_; it is this part that has the amplitude. The amplitude :math:`\omega` of
 each function is at least its share of 0.75 % of the mean friction; above that it has a lognormal
-prior, and is estimated with each rival in place. A function of friction has what is finer along the
-angle than the smooth one, with an amplitude of its own. One more function in load stands for the
-inertia of a speed that ripples with the angle.
+prior, and is estimated with each rival in place. In either channel a further function has what is
+finer along the angle than the smooth one, with an amplitude of its own. One more function in load
+stands for the inertia of a speed that ripples with the angle.
 
 Errors of the base's parameters are what a function adds along the base's columns, where no data
 show it. There its amplitude is known as well as beforehand only: its mean square under the
@@ -54,7 +54,7 @@ _MINOR_WEIGHT = 0.6
 than interactions, and gravity is better known than friction."""
 
 _FINE_WEIGHT = 0.2
-"""The same of friction's fine function of the angle: a smooth one would have 0.08 in its orders."""
+"""The same of a fine function of the angle: a smooth one would have 0.08 in its orders."""
 
 _UNSEEN = float(np.exp(SPREAD**2))
 """Root mean square of an amplitude that no data show, relative to its median."""

@@ -13,7 +13,7 @@ SPEED_RIPPLE = ("speed ripple",)
 FINE = ("fine position",)
 
 _FINE_ORDERS = (17, 32)
-"""Least and greatest order of the cosines of friction's fine function of the angle."""
+"""Least and greatest order of the cosines of a fine function of the angle."""
 
 _FRICTION = (
     ("position",),
@@ -51,6 +51,7 @@ def functions_of(table: EffectTable) -> list[tuple[Channel, tuple[str, ...], Arr
     found += [("friction", *one) for one in _functions(table, _FRICTION)]
     found += [("friction", *one) for one in _of_fine_angle(table)]
     found += [("load", *one) for one in _functions(table, _LOAD)]
+    found += [("load", *one) for one in _of_fine_angle(table)]
     found += [("load", *one) for one in _of_speed_ripple(table)]
     return found
 
@@ -72,7 +73,8 @@ def _of_fine_angle(table: EffectTable) -> list[tuple[tuple[str, ...], Array]]:
     """Return cosines of high orders over the angle, all with the same weight.
 
     They are those beyond the smooth function's. Without them, what is as fine, such as a higher
-    harmonic of a ripple, would be a ripple of its own beside a smooth function that is the ripple.
+    harmonic of a ripple, would be a ripple of its own beside a smooth function that is the ripple;
+    of the load, such as cogging, that of a friction which shows there because the torque is late.
     """
     angles = len(np.unique(table.position))
     order = np.arange(_FINE_ORDERS[0], min(_FINE_ORDERS[1], angles - 1) + 1)
