@@ -192,8 +192,8 @@ class Step:
         """Return the fit, weighted by this noise, by which causes are tested on another run."""
         layout, extra = self.problem.layout, self.problem.temperature_variance
         friction, load = self.noise()
-        known = self.precomputed.discrepancy
-        smooth = np.split(known.unseen(self.fit.variances.amplitude), 2)
+        known, amplitude = self.precomputed.discrepancy, self.fit.variances.amplitude
+        smooth = self.once("unseen", lambda: np.split(known.unseen(amplitude), 2))
         return WeightedFit(
             Weights.of(layout, friction, extra),
             Weights.of(layout, load, np.zeros_like(extra)),
