@@ -21,6 +21,7 @@ from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.mixed_model import (
     LEAST_VARIANCE,
     Components,
+    MixedFit,
     Variances,
 )
 from frictioncli.diagnosis.fit.products import Products
@@ -61,6 +62,9 @@ class Precomputed:
         What the variance components belong to.
     left : dict
         Products of what the base leaves of effects, by effect and shape, once they are known.
+    fitted : dict
+        Products and fit beside accepted effects, by effect, shape and free coefficients of each,
+        once they are known.
     """
 
     problem: Problem
@@ -74,6 +78,9 @@ class Precomputed:
     start: Variances
     components: Components
     left: dict[tuple[object, ...], tuple[Effect, Array, Array]] = field(
+        default_factory=dict, init=False, repr=False
+    )
+    fitted: dict[tuple[object, ...], tuple[tuple[Effect, ...], Products, MixedFit]] = field(
         default_factory=dict, init=False, repr=False
     )
 

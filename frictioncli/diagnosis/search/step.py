@@ -62,24 +62,27 @@ class Step:
     @classmethod
     def of(cls, precomputed: Precomputed, accepted: Sequence[EffectFit]) -> "Step":
         """Return the step with these effects accepted."""
-        problem = precomputed.problem
-        own = [
-            Part(
-                basis_columns(problem, problem.basis(one.effect, one.shape)).take(
-                    free_coefficients(one)
-                ),
-                precomputed.noises,
-            )
-            for one in accepted
-        ]
-        products = precomputed.products.beside(own)
-        components = precomputed.components
+        free = [free_coefficients(one) for one in accepted]
+        key = tuple(
+            (id(one.effect), *one.shape.items(), *numbers.tolist())
+            for one, numbers in zip(accepted, free, strict=True)
+        )
+        if key not in precomputed.fitted:
+            problem, noises = precomputed.problem, precomputed.noises
+            own = [basis_columns(problem, problem.basis(one.effect, one.shape)) for one in accepted]
+            parts = [Part(one.take(to), noises) for one, to in zip(own, free, strict=True)]
+            products = precomputed.products.beside(parts)
+            known = products.columns.count - 1
+            fit = fit_variances(precomputed.components, products, known, precomputed.start)
+            effects = tuple(one.effect for one in accepted)
+            precomputed.fitted[key] = effects, products, fit
+        _, products, fit = precomputed.fitted[key]
         return cls(
             precomputed=precomputed,
             accepted=tuple(accepted),
-            components=components,
+            components=precomputed.components,
             products=products,
-            fit=fit_variances(components, products, products.columns.count - 1, precomputed.start),
+            fit=fit,
         )
 
     def planted(self, basis: Basis, coefficients: Array) -> "Step":
