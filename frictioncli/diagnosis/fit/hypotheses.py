@@ -9,7 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.gravity import NAMES
 from frictioncli.diagnosis.data.load_levels import two_level_history
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.columns import ModelColumns, basis_columns, joined, main_channel
+from frictioncli.diagnosis.fit.columns import ModelColumns, main_channel, reduced
 from frictioncli.diagnosis.fit.mixed_model import Variances
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.effects.base import Effect
@@ -71,7 +71,8 @@ def hypothesis_of(
     tried = informative_shapes(effect, problem) if shapes is None else list(shapes)
     bases = [problem.basis(effect, shape) for shape in tried]
     rms = [np.sqrt(np.mean(np.square(main_channel(basis, effect)), axis=0)) for basis in bases]
-    columns = joined([basis_columns(problem, basis) for basis in bases])
+    beside = (np.hstack(channel) for channel in zip(*bases, strict=True))
+    columns = reduced(problem.layout, *beside)
     lower, upper = physical_bounds(effect, problem)
     return Hypothesis(
         name=effect.name,
