@@ -6,7 +6,6 @@ Groups that cross the same bins at one speed have the same matrix: they are tran
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.within_noise import WithinNoise, whitening
@@ -30,7 +29,12 @@ class GroupWhitening:
 
     @classmethod
     def of(
-        cls, noise: WithinNoise, keys: pd.DataFrame, speed: Array, block: Indices
+        cls,
+        noise: WithinNoise,
+        group: Indices,
+        position: Array,
+        speed: Array,
+        block: Indices,
     ) -> "GroupWhitening":
         """Return the matrices for the noise within pairs.
 
@@ -38,25 +42,27 @@ class GroupWhitening:
         ----------
         noise : WithinNoise
             Noise within pairs.
-        keys : DataFrame
-            Columns ``block`` and ``position`` of each row.
+        group : ndarray of int, shape (deviations,)
+            Group of each pooled deviation, in order.
+        position : ndarray, shape (deviations,)
+            Centre of its bin, in order within the group. [deg]
         speed : ndarray, shape (pairs,)
             Speed of each pair. [deg/s]
         block : ndarray of int, shape (pairs,)
             Group of each pair.
         """
-        pairs_speed = pd.Series(speed).groupby(block).mean().to_numpy()
-        groups = keys.drop_duplicates().sort_values(["block", "position"])
+        mean_speed = np.bincount(block, speed) / np.bincount(block)
         known: dict[tuple[float, bytes], Array] = {}
         numbers: dict[tuple[float, bytes], list[Indices]] = {}
-        first = 0
-        for number, own in groups.groupby("block")["position"]:
-            position, at = own.to_numpy(), float(pairs_speed[number])
-            key = (round(at, 1), position.tobytes())
+        heads = np.flatnonzero(np.diff(group, prepend=-1))
+        for number, first, bins in zip(
+            group[heads].tolist(), heads.tolist(), np.split(position, heads[1:]), strict=True
+        ):
+            at = float(mean_speed[number])
+            key = (round(at, 1), bins.tobytes())
             if key not in known:
-                known[key] = whitening(noise.correlation(position, at))[0]
-            numbers.setdefault(key, []).append(np.arange(first, first + len(position)))
-            first += len(position)
+                known[key] = whitening(noise.correlation(bins, at))[0]
+            numbers.setdefault(key, []).append(np.arange(first, first + len(bins)))
         orders = [np.column_stack(own).ravel() for own in numbers.values()]
         ends = np.cumsum([0, *map(len, orders)]).tolist()
         matrices = zip(known.values(), map(slice, ends, ends[1:]), strict=True)

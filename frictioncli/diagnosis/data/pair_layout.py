@@ -9,7 +9,6 @@ these pairs, and made white.
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 from scipy.sparse import csr_array
 
 from frictioncli.arrays import Array, Indices
@@ -134,10 +133,12 @@ class PairLayout:
         level = speed_level(speed)
         stretch = np.zeros(len(run), np.intp) if stretch is None else stretch
         block = neighbours(run, level, stretch)
-        keys = pd.DataFrame({"block": block[row_pair], "position": position})
-        group = keys.groupby(["block", "position"]).ngroup().to_numpy()
+        centres, centre = np.unique(position, return_inverse=True)
+        crossed, group = np.unique(block[row_pair] * len(centres) + centre, return_inverse=True)
         noise = noise or WithinNoise()
-        white = GroupWhitening.of(noise, keys, speed, block) if noise.share > 0 else None
+        group_of, bin_of = np.divmod(crossed, len(centres))
+        own = noise, group_of, centres[bin_of], speed, block
+        white = GroupWhitening.of(*own) if noise.share > 0 else None
         group = group if white is None else white.place[group]
         weight = 1 / np.sqrt(np.bincount(group))
         pooling = csr_array(
