@@ -230,8 +230,13 @@ class TransformedColumns:
         """
         ends = np.cumsum([one.columns.count for one in self.parts])
         shares = zip(self.parts, np.split(combination, ends[:-1]), strict=True)
-        shown = [(one, share) for one, share in shares if channel in one.shown]
-        return np.asarray(sum(one.at_all_times(channel) @ share for one, share in shown))
+        means = sum(
+            one.columns.channels[channel].means @ share
+            for one, share in shares
+            if channel in one.shown
+        )
+        # the combination alone is transformed, and not each of its columns
+        return np.array(self.noises.spectra[channel].all_modes(np.asarray(means)))
 
     def beside(self, own: Sequence[Part]) -> "TransformedColumns":
         """Return the columns with further ones before the last one, the misfit.
