@@ -83,6 +83,7 @@ def _fitted_from(
             if fit.objective < best.objective:
                 best = fit
             if abs(before - fit.objective) < _CONVERGED:
+                found = found | {variances.noise}
                 break
             before = fit.objective
             variances = _updated(components, chosen, fit)
