@@ -18,7 +18,7 @@ from frictioncli.diagnosis.search.cause_selection import (
     uncertain_causes,
 )
 from frictioncli.diagnosis.search.decays import with_one_decay
-from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
+from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
@@ -28,7 +28,7 @@ from frictioncli.diagnosis.search.stated_size import sizes_beside_each_other
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing
 from frictioncli.diagnosis.search.torque_scale import with_torque_scale
-from frictioncli.diagnosis.search.understood import understood
+from frictioncli.diagnosis.search.understood import structure_beside, understood
 from frictioncli.diagnosis.search.without_a_name import (
     beyond_doubt_without_a_name,
     change_over_time,
@@ -193,10 +193,11 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
     others = [one for one in judged.causes if one.standing != "named"]
     rows = [judging.problem] if judging.new is None else [judging.problem, judging.new]
     scaled = with_torque_scale(judged.named, judged.found.step, rows)
-    is_left = structure is not None and scaled.step is not judged.found.step
+    if scaled.step is not step:
+        # what lost its name was a part of the structure, or all of it
+        left = structure_beside(scaled.step, scaled.causes, judging.margin, judging.alpha)
+        structure = left if scaled.step is not judged.found.step else left or structure
     there = beyond_doubt_without_a_name(first.causes, _names(judged.named), judging.margin)
-    if is_left or (structure is None and there):
-        structure = unnamed_structure(scaled.step, judging.margin, judging.alpha)
     if structure is None and all(one.fit.effect.measurement for one in scaled.causes):
         structure = change_over_time(there)
     return NamedCauses(

@@ -53,11 +53,7 @@ def understood(
         Significance level.
     """
     named = tuple(one for one in causes if one.standing == "named")
-
-    def is_form(structure: Structure) -> bool:
-        return any(_is_form_of(one, structure) for one in named)
-
-    structure = unnamed_structure(step, margin, alpha, is_form)
+    structure = structure_beside(step, named, margin, alpha)
     if structure is None:
         return named, None
     kept = tuple(one for one in named if not is_part(one.fit.effect, one.visible, structure))
@@ -66,6 +62,29 @@ def understood(
         rest = [one for one in step.accepted if one.effect.name not in lost]
         structure = unnamed_structure(Step.of(step.precomputed, rest), margin, alpha) or structure
     return kept, structure
+
+
+def structure_beside(
+    step: Step, named: Sequence[Cause], margin: float, alpha: float
+) -> Structure | None:
+    """Return structure that is not the error of the form of a named cause; None without any.
+
+    Parameters
+    ----------
+    step : Step
+        Base and all that stands beside it.
+    named : sequence of Cause
+        Causes that are named.
+    margin : float
+        Smallest size worth a name. [N·m]
+    alpha : float
+        Significance level.
+    """
+
+    def is_form(structure: Structure) -> bool:
+        return any(_is_form_of(one, structure) for one in named)
+
+    return unnamed_structure(step, margin, alpha, is_form)
 
 
 def _is_form_of(cause: Cause, unnamed: Structure) -> bool:
