@@ -44,6 +44,12 @@ _CENTRAL = (0.05, 0.95)
 _LEAST_RELATIVE = 0.05
 """Least spread of speed relative to its mean, and of load relative to its greatest."""
 
+_OF_SPEED = 4
+"""Cosines over the logarithm of the speed in products with the angle."""
+
+_LEAST_SPEED = 1e-3
+"""Least speed relative to the mean, of which there is a logarithm."""
+
 _LEAST_LOAD = 0.02
 """Least spread of a simulated load relative to the mean friction: less carries no structure."""
 
@@ -170,6 +176,10 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     levels = _levels(table.temperature)
     relative_temperature = ((table.temperature - table.temperature.mean()) / 10.0)[:, np.newaxis]
     relative_speed = (table.speed / table.speed.mean())[:, np.newaxis]
+    # laws of the speed are as often of its logarithm; the load has all levels of it, and is not
+    # likelier because the angle has fewer
+    of_logarithm = cosines(np.log(np.maximum(relative_speed[:, 0], _LEAST_SPEED)), _OF_SPEED)
+    of_speed = np.hstack([relative_speed, of_logarithm])
     columns: dict[tuple[tuple[str, ...], Channel], Array] = {
         (("speed",), "friction"): speed,
         (("temperature",), "friction"): np.hstack([temperature, warming * temperature]),
@@ -182,7 +192,7 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
         (("load", "temperature"), "friction"): squared * levels,
         (("speed", "temperature"), "friction"): _products(_levels(table.speed), levels),
         (("position", "temperature"), "friction"): waves * relative_temperature,
-        (("position", "speed"), "friction"): waves * relative_speed,
+        (("position", "speed"), "friction"): _products(waves, of_speed),
         (("position", "time"), "friction"): _products(waves, time[:, :2]),
         (("position", "speed"), "load"): waves * relative_speed,
         (("speed",), "load"): speed,

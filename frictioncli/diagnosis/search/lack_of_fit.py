@@ -155,8 +155,8 @@ def first_above(
 
 def _may_be_of_load(one: Structure, found: Sequence[Structure]) -> bool:
     """Return whether structure along the angle is about as likely along the load."""
-    return one.axes == ("position",) and any(
-        two.axes == ("load",)
+    return one.axes[0] == "position" and any(
+        two.axes == ("load", *one.axes[1:])
         and two.channel == one.channel
         and two.statistic > one.statistic - _TOLD_BY_ANGLE
         for two in found
@@ -234,7 +234,7 @@ def _structures(step: Step) -> tuple[Structure, ...]:
     )
 
     def behind(one: Structure) -> float:
-        return -one.statistic + _TOLD_BY_ANGLE * (one.axes == ("load",))
+        return -one.statistic + _TOLD_BY_ANGLE * (one.axes[0] == "load")
 
     return tuple(sorted(every, key=behind))
 
