@@ -60,19 +60,6 @@ def chi2_tail(value: float, freedom: float) -> float:
     return float(special.chdtrc(freedom, value)) if value > 0 else 1.0
 
 
-def chi2_exceeded(probability: float, freedom: float) -> float:
-    """Return the value that chi-squared exceeds with a probability.
-
-    Parameters
-    ----------
-    probability : float
-        From 0 to 1.
-    freedom : float
-        Degrees of freedom.
-    """
-    return float(special.chdtri(freedom, probability))
-
-
 def f_tail(value: float, numerator: float, denominator: float) -> float:
     """Return the probability that F exceeds a value.
 

@@ -27,7 +27,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import reduced
-from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of
+from frictioncli.diagnosis.fit.left_by_base import left_by, span_of
 from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, Variances
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
@@ -35,8 +35,9 @@ from frictioncli.diagnosis.noise.discrepancy_functions import SPEED_RIPPLE
 from frictioncli.diagnosis.search.axis_columns import axis_columns, can_be_judged, cosines
 from frictioncli.diagnosis.search.carried_load import most_likely_constant
 from frictioncli.diagnosis.search.margin import channel_margin
+from frictioncli.diagnosis.search.realised_size import realised, realised_drift
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.distributions import chi2_exceeded, chi2_tail
+from frictioncli.distributions import chi2_tail
 from frictioncli.effects.base import Basis, Channel
 
 _DRIFT = 0.015
@@ -201,8 +202,10 @@ def _structures(step: Step) -> tuple[Structure, ...]:
         scale = float(np.sqrt(len(columns) / squares))
         fit = _beside_function(step, expected, basis, scale, (null.variances, known))
         place = slice(step.known, step.known + columns.shape[1])
-        size, interval = _realised(
-            scale * left, fit.coefficients[place], fit.covariance[place, place]
+        size, interval = realised(
+            scale**2 * (left.T @ left) / len(columns),
+            fit.coefficients[place],
+            fit.covariance[place, place],
         )
         return names, channel, null.objective - fit.objective, size, interval
 
@@ -281,34 +284,11 @@ def _unit_amplitude(step: Step) -> float:
     return float(np.log(step.precomputed.start.between[0]) / 2)
 
 
-def _realised(columns: Array, mean: Array, covariance: Array) -> tuple[float, tuple[float, float]]:
-    """Return the RMS of a function whose coefficients have a normal distribution, with interval.
-
-    From mean and variance of its mean square.
-    """
-    inner = columns.T @ columns / (len(columns) / 2)
-    product = inner @ covariance
-    square = float(mean @ inner @ mean) + float(np.trace(product))
-    variance = 2 * float(np.trace(product @ product)) + 4 * float(mean @ product @ inner @ mean)
-    reach = Z95 * np.sqrt(max(variance, 0.0))
-    low, high = max(square - reach, 0.0), square + reach
-    return float(np.sqrt(square)), (float(np.sqrt(low)), float(np.sqrt(high)))
-
-
 def _drift(step: Step, expected: Components, null: MixedFit, number: int) -> _Found:
     """Return what the drift in one channel explains beyond what any joint has."""
     most = np.where(np.arange(2) == number, np.inf, expected.most_drift)
     freer = replace(expected, most_drift=(float(most[0]), float(most[1])))
     fit = fit_variances(freer, step.products, step.known, null.variances, step.fit.variances)
-    variances = fit.variances
-    model = variances.noise[number]
-    square = variances.between[number] * float(expected.drifts[number][model])
-    spectra = step.precomputed.noises.spectra[number]
-    time = spectra.spectra[step.precomputed.noises.indices[model][0]].time
-    duration = sum(float(np.ptp(step.problem.layout.time[part])) for part in spectra.runs)
-    # the mean square of such a drift is known as that of so many independent values
-    freedom = max(duration / time, 1.0)
-    low, high = (freedom * square / chi2_exceeded(share, freedom) for share in (0.025, 0.975))
     channel: Channel = "load" if number else "friction"
-    interval = float(np.sqrt(low)), float(np.sqrt(high))
-    return ("time",), channel, null.objective - fit.objective, float(np.sqrt(square)), interval
+    size, interval = realised_drift(step, fit, number)
+    return ("time",), channel, null.objective - fit.objective, size, interval

@@ -5,6 +5,9 @@ new run that axis alone is asked for, and has the p-value *b*. Fisher's method [
 
 .. math:: p = ab \, (1 - \ln ab) .
 
+What is beyond doubt on the new run needs no more than to be as large on the runs seen: a drift that
+is just no more than any joint's may be one that oscillates.
+
 References
 ----------
 .. [1] R. A. Fisher, Statistical Methods for Research Workers, 4th ed., Oliver and Boyd, 1932,
@@ -15,6 +18,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.lack_of_fit import Structure, structures
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.step import Step
@@ -30,7 +34,8 @@ _TOGETHER = 1e-4
 def recurring_structure(step: Step, again: Sequence[Structure], margin: float) -> Structure | None:
     """Return structure of the runs seen that a new run has again; None without any.
 
-    Both must have most of it along the same axis.
+    Both must have most of it along the same axis, or both a size of it that is surely above the
+    margin where it is beyond doubt on the new run.
 
     Parameters
     ----------
@@ -46,7 +51,12 @@ def recurring_structure(step: Step, again: Sequence[Structure], margin: float) -
     alone = chi2_tail(other.statistic, 1) / 2
     if alone > _CHANCE or other.interval[0] <= least:
         return None
-    one = structures(step)[0]
+    found = structures(step)
+    if other.p_value < BEYOND_DOUBT:
+        alike = [one for one in found if (one.axes, one.channel) == (other.axes, other.channel)]
+        if alike and alike[0].interval[0] > least:
+            return replace(alike[0], p_value=other.p_value)
+    one = found[0]
     both = max(one.p_value * alone, 1e-300)
     together = both * (1 - math.log(both))
     is_same = (one.axes, one.channel) == (other.axes, other.channel)
