@@ -11,7 +11,7 @@ import numpy as np
 from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
 from frictioncli.effects.parameter import Parameter
 
-LEAST_PERIODS = 1.25
+_LEAST_PERIODS = 1.25
 """Over fewer periods a ripple cannot be distinguished from a load term."""
 
 _LEAST_ANGLES = 10
@@ -34,7 +34,7 @@ def basis(table: EffectTable, *, order: float) -> Basis:
     """
     angles = table.angles
     finest = float(np.min(np.diff(angles))) if len(angles) > 1 else 360.0
-    long_enough = order * float(np.ptp(angles)) / 360.0 >= LEAST_PERIODS
+    long_enough = order * float(np.ptp(angles)) / 360.0 >= _LEAST_PERIODS
     enough = long_enough and len(angles) >= _LEAST_ANGLES
     resolved = 1.0 if enough and order <= 180.0 / finest else 0.0
     second = resolved

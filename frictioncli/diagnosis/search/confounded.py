@@ -15,7 +15,6 @@ from frictioncli.effects.backlash import EFFECT as BACKLASH
 from frictioncli.effects.base import Effect
 from frictioncli.effects.inertia import EFFECT as INERTIA
 from frictioncli.effects.position_ripple import EFFECT as POSITION_RIPPLE
-from frictioncli.effects.position_ripple import LEAST_PERIODS
 from frictioncli.effects.reversal_transient import EFFECT as REVERSAL_TRANSIENT
 from frictioncli.wording import in_words
 
@@ -60,9 +59,9 @@ _LOOKS_LIKE_ENDS = (
     " the same"
 )
 
-_SELDOM = 1.1
-"""Order of a ripple relative to the least that a stroke shows, up to which it is no more than that:
-any smooth function of the angle is the likeliest there."""
+_LEAST_SEEN = 1.5
+"""Periods of a ripple in the stroke below which less than half of it is seen twice: it may be any
+smooth function of the angle, as one bump."""
 
 _LOOKS_LIKE_SMOOTH = (
     "over the angles measured it would hardly repeat, and any smooth dependence of friction on the"
@@ -125,8 +124,8 @@ def hardly_repeats(fit: EffectFit, problem: Problem) -> str:
     """
     if fit.effect is not POSITION_RIPPLE:
         return ""
-    least = LEAST_PERIODS * 360.0 / float(np.ptp(problem.table.position))
-    return _LOOKS_LIKE_SMOOTH if fit.shape["order"] < _SELDOM * least else ""
+    periods = fit.shape["order"] * float(np.ptp(problem.table.position)) / 360.0
+    return _LOOKS_LIKE_SMOOTH if periods < _LEAST_SEEN else ""
 
 
 def without_forms_of_ends(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
