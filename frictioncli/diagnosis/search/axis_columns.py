@@ -176,10 +176,6 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     levels = _levels(table.temperature)
     relative_temperature = ((table.temperature - table.temperature.mean()) / 10.0)[:, np.newaxis]
     relative_speed = (table.speed / table.speed.mean())[:, np.newaxis]
-    # laws of the speed are as often of its logarithm; the load has all levels of it, and is not
-    # likelier because the angle has fewer
-    of_logarithm = cosines(np.log(np.maximum(relative_speed[:, 0], _LEAST_SPEED)), _OF_SPEED)
-    of_speed = np.hstack([relative_speed, of_logarithm])
     columns: dict[tuple[tuple[str, ...], Channel], Array] = {
         (("speed",), "friction"): speed,
         (("temperature",), "friction"): np.hstack([temperature, warming * temperature]),
@@ -192,7 +188,7 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
         (("load", "temperature"), "friction"): squared * levels,
         (("speed", "temperature"), "friction"): _products(_levels(table.speed), levels),
         (("position", "temperature"), "friction"): waves * relative_temperature,
-        (("position", "speed"), "friction"): _products(waves, of_speed),
+        (("position", "speed"), "friction"): waves * relative_speed,
         (("position", "time"), "friction"): _products(waves, time[:, :2]),
         (("position", "speed"), "load"): waves * relative_speed,
         (("speed",), "load"): speed,
@@ -205,6 +201,29 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     if not friction_tells_load(problem):
         del columns[("load",), "friction"]
     return {place: values for place, values in columns.items() if varying.issuperset(place[0])}
+
+
+def angle_and_speed(problem: Problem) -> Array:
+    """Return columns of angle and speed with as many functions of the speed as those of the load.
+
+    A law of the logarithm of the speed is none of the speed alone, and with few functions of it the
+    load, which has all levels of the speed, would be likelier than the angle.
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+
+    Returns
+    -------
+    ndarray, shape (rows, columns)
+    """
+    speed = problem.table.speed / problem.table.speed.mean()
+    of_logarithm = cosines(np.log(np.maximum(speed, _LEAST_SPEED)), _OF_SPEED)
+    orders = np.repeat(np.arange(1, _SLOW_HARMONICS + 1), 2)
+    angle = np.radians(problem.table.position)[:, np.newaxis]
+    waves = np.where(np.arange(len(orders)) % 2, np.cos(orders * angle), np.sin(orders * angle))
+    return _products(_weights(orders) * waves, np.column_stack([speed, of_logarithm]))
 
 
 def can_be_judged(problem: Problem, columns: Array) -> bool:

@@ -32,7 +32,12 @@ from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, Variance
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.noise.discrepancy_functions import SPEED_RIPPLE
-from frictioncli.diagnosis.search.axis_columns import axis_columns, can_be_judged, cosines
+from frictioncli.diagnosis.search.axis_columns import (
+    angle_and_speed,
+    axis_columns,
+    can_be_judged,
+    cosines,
+)
 from frictioncli.diagnosis.search.carried_load import most_likely_constant
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.realised_size import realised, realised_drift
@@ -54,6 +59,9 @@ _TOLD_BY_ANGLE = 10.0
 load is a function of the angle, and what goes with it goes with the angle, too."""
 
 _LOAD: tuple[tuple[str, ...], Channel] = (("load",), "friction")
+
+_LOAD_AND_SPEED: tuple[tuple[str, ...], Channel] = (("load", "speed"), "friction")
+_ANGLE_AND_SPEED: tuple[tuple[str, ...], Channel] = (("position", "speed"), "friction")
 
 _Found = tuple[tuple[str, ...], Channel, float, float, tuple[float, float]]
 """Axes, channel, twice the log likelihood ratio, size [N·m] and its interval."""
@@ -222,6 +230,12 @@ def _structures(step: Step) -> tuple[Structure, ...]:
 
         constant = most_likely_constant(problem, lambda one: carried(one)[2])
         by_place[_LOAD] = max(load, carried(constant), key=lambda one: one[2])
+    of_load, of_angle = (by_place.get(one) for one in (_LOAD_AND_SPEED, _ANGLE_AND_SPEED))
+    if of_load is not None and of_angle is not None and of_load[2] > of_angle[2] + _TOLD_BY_ANGLE:
+        finer = judged(*_ANGLE_AND_SPEED, angle_and_speed(problem))
+        if finer is not None and finer[2] > of_load[2] - _TOLD_BY_ANGLE:
+            # more functions may cancel the discrepancy's: the size is that of the fewer
+            by_place[_ANGLE_AND_SPEED] = (*finer[:3], *of_load[3:])
     found = [one for one in by_place.values() if one is not None]
     found += [_drift(step, expected, null, number) for number in range(2)]
     every = (
