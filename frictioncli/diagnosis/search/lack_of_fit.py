@@ -232,7 +232,9 @@ def _structures(step: Step) -> tuple[Structure, ...]:
         by_place[_LOAD] = max(load, carried(constant), key=lambda one: one[2])
     of_load, of_angle = (by_place.get(one) for one in (_LOAD_AND_SPEED, _ANGLE_AND_SPEED))
     if of_load is not None and of_angle is not None and of_load[2] > of_angle[2] + _TOLD_BY_ANGLE:
-        finer = judged(*_ANGLE_AND_SPEED, angle_and_speed(problem))
+        columns = angle_and_speed(problem)
+        enough = can_be_judged(problem, columns)
+        finer = judged(*_ANGLE_AND_SPEED, columns) if enough else None
         if finer is not None and finer[2] > of_load[2] - _TOLD_BY_ANGLE:
             # more functions may cancel the discrepancy's: the size is that of the fewer
             by_place[_ANGLE_AND_SPEED] = (*finer[:3], *of_load[3:])
