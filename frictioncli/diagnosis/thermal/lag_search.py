@@ -50,9 +50,9 @@ def search_with_lag(
     """Search for causes; where a lag of the gear is one, about the temperature of the gear.
 
     A gear that friction warms more than the motor looks much like a sensor that lags: either has
-    friction lower while heating. Where what a sensor leaves of it is not surely worth a name, or
-    where the lag of a sensor itself surely is, the search is repeated without the sensor, and a lag
-    of the gear that is then large enough is one of the two.
+    friction lower while heating. Where what a sensor leaves of it is not surely worth a name, the
+    search is repeated without the sensor, and a lag of the gear that is then large enough is one of
+    the two.
 
     Parameters
     ----------
@@ -77,12 +77,9 @@ def search_with_lag(
     """
     refine = partial(refine_thermal, problem, new, measurement=measurement)
     found, lag = _searched(problem, effects, search, refine, margin)
-    if _has_lag(found) and _left_of_lag(found) > margin:
+    if not _has_lag(found) or _left_of_lag(found) > margin:
         return found, lag
-    sensor = _lag_of_sensor(found)
-    if not _has_lag(found) and (sensor is None or sensor.visible_interval[0] <= margin):
-        return found, lag
-    share = max(_share_of_lag(found, margin), _share_beyond(sensor))
+    share = max(_share_of_lag(found, margin), _share_beyond(found))
     without = partial(search, measurement=_WITHOUT_SENSOR)
     again, refined = _searched(problem, effects, without, refine, margin)
     if refined is None or _left_of_lag(again) <= margin:
@@ -93,29 +90,23 @@ def search_with_lag(
 
 def _share_of_lag(found: SearchResult, margin: float) -> float:
     """Return the probability that beside the lag of a sensor one of the gear is worth a name."""
-    if not _has_lag(found):
-        return _EVEN
     cause = _lag_of(found)
     low, high = cause.visible_interval
     return _probability_above(margin, cause.visible, (high - low) / (2 * Z95))
 
 
-def _share_beyond(sensor: Cause | None) -> float:
+def _share_beyond(found: SearchResult) -> float:
     """Return the probability that a sensor would have to lag by more than one does."""
+    sensor = next((one.fit for one in found.measurement if one.fit.effect is SENSOR_LAG), None)
     if sensor is None:
         return _EVEN
-    late, error = sensor.fit.coefficients[0], standard_errors(sensor.fit)[0]
+    late, error = sensor.coefficients[0], standard_errors(sensor)[0]
     return _probability_above(TIME_CONSTANT, float(late), float(error))
 
 
 def _probability_above(limit: float, value: float, error: float) -> float:
     """Return the probability that a value is above a limit, no less than even."""
     return float(np.clip(ndtr((value - limit) / max(error, 1e-9)), _EVEN, _SURE))
-
-
-def _lag_of_sensor(found: SearchResult) -> Cause | None:
-    """Return the lag of the sensor as it stands beside the base, if it does."""
-    return next((one for one in found.measurement if one.fit.effect is SENSOR_LAG), None)
 
 
 def _lag_or_sensor(cause: Cause, share: float) -> Cause:
