@@ -44,7 +44,7 @@ def thin(tmp_path_factory):
     work = tmp_path_factory.mktemp("plan") / "run"
     series = MeasuredMoves(speeds=(20.0, 60.0, FASTEST), low=0.0, high=180.0)
     heat = UnrecordedMoves(speed=FASTEST, low=0.0, high=180.0, seconds=360.0)
-    settings = SynthesisSettings(seed=3, joint_kind="plain", effects=("thermal_lag:2.5",))
+    settings = SynthesisSettings(seed=6, joint_kind="plain", effects=("thermal_lag:2.5",))
     (table,) = simulate_programmes(settings, [[series, heat] * 8], 1)
     work.mkdir()
     facts = {"torque_unit": "N·m", "torque_side": "joint", "sign": {"2": 1}}
