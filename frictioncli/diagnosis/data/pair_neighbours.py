@@ -24,12 +24,12 @@ def neighbours(run: Indices, level: Indices, stretch: Indices) -> Indices:
     run, level, stretch : ndarray of int, shape (pairs,)
         Run, speed level and stretch of each pair.
     """
-    group = _numbered(run, level, stretch)
+    group = numbered(run, level, stretch)
     order = np.argsort(group, kind="stable")
     count = np.bincount(group)
     place = np.empty_like(group)
     place[order] = np.arange(len(group)) - np.repeat(np.cumsum(count) - count, count)
-    return _numbered(group, place // _POOLED)
+    return numbered(group, place // _POOLED)
 
 
 def jumps_of(
@@ -53,7 +53,7 @@ def jumps_of(
     """
     steps: dict[int, list[Array]] = {}
     later: dict[int, list[Indices]] = {}
-    for chosen in same_bins(row_pair, _numbered(run, level), position):
+    for chosen in same_bins(row_pair, numbered(run, level), position):
         pairs = row_pair[chosen[:, 0]]
         squares = np.mean(np.square(np.diff(deviations[chosen], axis=0)), axis=1)
         steps.setdefault(int(level[pairs[0]]), []).append(squares)
@@ -77,7 +77,7 @@ def stretches_of(jumps: Flags, run: Indices, level: Indices) -> Indices:
     run, level : ndarray of int, shape (pairs,)
         Run and speed level of each pair.
     """
-    numbers = pd.Series(jumps.astype(np.intp)).groupby(_numbered(run, level)).cumsum()
+    numbers = pd.Series(jumps.astype(np.intp)).groupby(numbered(run, level)).cumsum()
     return np.asarray(numbers)
 
 
@@ -102,6 +102,12 @@ def same_bins(row_pair: Indices, group: Indices, position: Array) -> tuple[Indic
     return tuple(np.array(rows) for rows in alike.values() if len(rows) > 1 and len(rows[0]) > 2)
 
 
-def _numbered(*keys: Indices) -> Indices:
-    """Return the number of each pair's combination of keys, in their order, shape (pairs,)."""
+def numbered(*keys: Indices) -> Indices:
+    """Return the number of each pair's combination of keys, in their order, shape (pairs,).
+
+    Parameters
+    ----------
+    *keys : ndarray of int, shape (pairs,)
+        Keys of each pair, as its run and its speed level.
+    """
     return np.unique(np.column_stack(keys), axis=0, return_inverse=True)[1].ravel()

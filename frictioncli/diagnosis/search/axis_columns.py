@@ -151,10 +151,7 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     """
     table = problem.table
     angle = np.radians(table.position)
-    orders = np.repeat(np.arange(1, _HARMONICS + 1), 2)
-    harmonics = _weights(orders) * np.column_stack(
-        [wave(n * angle) for n in range(1, _HARMONICS + 1) for wave in (np.sin, np.cos)]
-    )
+    harmonics = _harmonics(angle, _HARMONICS)
     speed = _indicators(problem.layout.level)[problem.layout.row_pair]
     temperature = cosines(table.temperature)
     # a stroke of less than a turn has finer structure than harmonics of a turn show; the load has
@@ -220,10 +217,8 @@ def angle_and_speed(problem: Problem) -> Array:
     """
     speed = problem.table.speed / problem.table.speed.mean()
     of_logarithm = cosines(np.log(np.maximum(speed, _LEAST_SPEED)), _OF_SPEED)
-    orders = np.repeat(np.arange(1, _SLOW_HARMONICS + 1), 2)
-    angle = np.radians(problem.table.position)[:, np.newaxis]
-    waves = np.where(np.arange(len(orders)) % 2, np.cos(orders * angle), np.sin(orders * angle))
-    return _products(_weights(orders) * waves, np.column_stack([speed, of_logarithm]))
+    waves = _harmonics(np.radians(problem.table.position), _SLOW_HARMONICS)
+    return _products(waves, np.column_stack([speed, of_logarithm]))
 
 
 def can_be_judged(problem: Problem, columns: Array) -> bool:
@@ -254,6 +249,13 @@ def cosines(values: Array, count: int = _COSINES) -> Array:
     unit = (values - np.min(values)) / max(float(np.ptp(values)), 1e-9)
     orders = np.arange(1, count + 1)
     return np.asarray(_weights(orders) * np.cos(np.pi * orders * unit[:, np.newaxis]))
+
+
+def _harmonics(angle: Array, count: int) -> Array:
+    """Return weighted sines and cosines of an angle in rad, in turn, shape (rows, 2 * count)."""
+    orders = np.arange(1, count + 1)
+    waves = [wave(order * angle) for order in orders for wave in (np.sin, np.cos)]
+    return np.asarray(_weights(np.repeat(orders, 2)) * np.column_stack(waves))
 
 
 def _weights(orders: Indices) -> Array:

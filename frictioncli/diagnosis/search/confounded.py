@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array
+from frictioncli.diagnosis.data.pair_neighbours import numbered
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
@@ -196,7 +197,7 @@ def turns_elsewhere(problem: Problem) -> bool:
     """
     position, layout = problem.table.position, problem.layout
     _, heads = np.unique(layout.row_pair, return_index=True)
-    groups = np.unique(np.column_stack([layout.run, layout.level]), axis=0, return_inverse=True)[1]
+    groups = numbered(layout.run, layout.level)
     found = []
     for ends in (np.minimum.reduceat(position, heads), np.maximum.reduceat(position, heads)):
         own = [_squares(ends[groups == one]) for one in np.unique(groups)]
