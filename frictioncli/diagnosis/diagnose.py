@@ -260,7 +260,7 @@ def diagnose_joint(
     rest = [one for one in named.others if one.fit.effect.name not in names]
     given_up = given_up_causes(found, settings.alpha)
     visible = visible_causes(
-        (*rest, *corrected, *given_up, *result.refuted, *found.refused), problem
+        (*rest, *corrected, *given_up, *result.refuted), found.refused, causes, problem
     )
     return Diagnosis(
         joint=joint,

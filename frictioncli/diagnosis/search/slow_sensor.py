@@ -1,4 +1,4 @@
-"""What a temperature sensor that lags may hide of a lag of the gear."""
+"""What a temperature sensor that lags may hide of a lag of the gear, or add to it."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -9,7 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.left_by_base import left_by
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.effects.base import applicable
+from frictioncli.effects.base import Effect, applicable
 from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
@@ -18,13 +18,18 @@ TIME_CONSTANT = 90.0
 
 
 def behind_sensor(
-    causes: Sequence[Cause], measurement: Sequence[Cause], problem: Problem, span: Array
+    causes: Sequence[Cause],
+    measurement: Sequence[Cause],
+    problem: Problem,
+    base: Problem,
+    span: Array,
 ) -> tuple[Cause, ...]:
-    """Return causes of which a lag of the gear may be larger by what a sensor hides of it.
+    """Return causes of which a lag of the gear is known as well as what a sensor adds to it.
 
-    Behind a sensor that lags, a gear lags less, and data with both hardly tell how much: a sensor
-    alone would have to lead. So it does not stand beside the base, and what is seen of the lag of
-    the gear is what the sensor leaves of it.
+    Data with both hardly tell how much either lags: where that of the sensor came out impossible,
+    or is in a set with that of the gear, it does not stand beside the base, and what is seen is the
+    sum of both. A gear that follows the motor lags by more than is seen, one that friction warms
+    more than the motor by less.
 
     Parameters
     ----------
@@ -33,28 +38,47 @@ def behind_sensor(
     measurement : sequence of Cause
         Effects of the measurement beside the base.
     problem : Problem
-        The rows.
+        The rows, as the causes were found.
+    base : Problem
+        The rows about the measured temperature, after whose slope a sensor lags.
     span : ndarray, shape (2 * rows, rank)
         What can take torque from a cause.
     """
     beside = {one.fit.effect.name for one in measurement}
-    if SENSOR_LAG.name in beside or not applicable([SENSOR_LAG], problem.table):
+    if SENSOR_LAG.name in beside or not applicable([SENSOR_LAG], base.table):
         return tuple(causes)
+    sensor = left_by(span, base.basis(SENSOR_LAG, {}))[:, 0]
     return tuple(
-        _larger_by_chance(one, problem, span) if one.fit.effect.name == THERMAL_LAG.name else one
+        _beside_any(sensor, one, problem, span) if one.fit.effect.name == THERMAL_LAG.name else one
         for one in causes
     )
 
 
-def _larger_by_chance(cause: Cause, problem: Problem, span: Array) -> Cause:
-    """Return a lag whose interval holds what a slow sensor would hide of it."""
+def is_in_size_of(effect: Effect, causes: Sequence[Cause]) -> bool:
+    """Return whether an effect of the measurement may be a part of what is seen of a named cause.
+
+    Parameters
+    ----------
+    effect : Effect
+        The effect.
+    causes : sequence of Cause
+        Causes that are named.
+    """
+    lag = any(one.effects == (THERMAL_LAG.name,) for one in causes)
+    return effect is SENSOR_LAG and lag
+
+
+def _beside_any(sensor: Array, cause: Cause, problem: Problem, span: Array) -> Cause:
+    """Return a lag whose interval holds what is left of it beside any sensor of a winding."""
     fit = cause.fit
-    lag = left_by(span, problem.basis(fit.effect, fit.shape)) @ fit.coefficients
-    sensor = left_by(span, problem.basis(SENSOR_LAG, {}))[:, 0]
-    with_sensor, alone = (
-        float(np.linalg.norm(one)) / np.sqrt(len(one) / 2)
-        for one in (lag - TIME_CONSTANT * sensor, lag)
+    both = left_by(span, problem.basis(fit.effect, fit.shape)) @ fit.coefficients
+    nearest = float(both @ sensor) / max(float(sensor @ sensor), 1e-300)
+    alone, slow, least = (
+        float(np.linalg.norm(both - late * sensor)) / np.sqrt(len(both) / 2)
+        for late in (0.0, TIME_CONSTANT, np.clip(nearest, 0.0, TIME_CONSTANT))
     )
     low, high = cause.visible_interval
-    above = float(np.hypot(high - cause.visible, max(with_sensor - alone, 0.0)))
-    return replace(cause, visible_interval=(low, cause.visible + above))
+    below = float(np.hypot(cause.visible - low, alone - least))
+    above = float(np.hypot(high - cause.visible, max(slow - alone, 0.0)))
+    interval = max(cause.visible - below, 0.0), cause.visible + above
+    return replace(cause, visible_interval=interval)

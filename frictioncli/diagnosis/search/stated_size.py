@@ -96,7 +96,7 @@ def sizes_in_model(
     span = span_at_measured(base, measurement)
     weighted_fit = sizing_fit(step, measurement, extension.effects)
     stated = stated_sizes(causes, extension, step.problem, weighted_fit, span)
-    return behind_sensor(stated, measurement, step.problem, span)
+    return behind_sensor(stated, measurement, step.problem, base, span)
 
 
 def sizes_beside_each_other(

@@ -7,21 +7,36 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import strength
 from frictioncli.diagnosis.search.measurement import CLEAR
+from frictioncli.diagnosis.search.slow_sensor import is_in_size_of
 
 
-def visible_causes(unnamed: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
+def visible_causes(
+    unnamed: Sequence[Cause], refused: Sequence[Cause], causes: Sequence[Cause], problem: Problem
+) -> tuple[Cause, ...]:
     """Return what was found and is not named, with the reason, largest first.
 
-    An effect of the measurement that nothing speaks for is not worth a line.
+    An effect of the measurement that nothing speaks for is not worth a line, unless it was refused
+    and may be in the size of a cause.
 
     Parameters
     ----------
     unnamed : sequence of Cause
         What was found and is not named.
+    refused : sequence of Cause
+        Effects of the measurement that do not stand beside the base.
+    causes : sequence of Cause
+        Causes that are named.
     problem : Problem
         The joint's rows.
     """
-    left = [one for one in unnamed if not one.fit.effect.measurement or one.test.p_value < CLEAR]
+
+    def is_worth_a_line(cause: Cause) -> bool:
+        return not cause.fit.effect.measurement or cause.test.p_value < CLEAR
+
+    left = [one for one in unnamed if is_worth_a_line(one)]
+    left += [
+        one for one in refused if is_worth_a_line(one) or is_in_size_of(one.fit.effect, causes)
+    ]
 
     def share(cause: Cause) -> float:
         return strength(problem, cause.fit.effect.channel, cause.visible)
