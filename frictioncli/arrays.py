@@ -6,6 +6,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 """Numbers."""
 
+ComplexArray = NDArray[np.complex128]
+"""Complex numbers."""
+
 Numbers = NDArray[np.int64]
 """Whole numbers: counts, bins, positions in a table."""
 

@@ -26,6 +26,7 @@ from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.late_ripple import shown_by_ripple
 from frictioncli.diagnosis.search.margin import channel_margin, margin_of
 from frictioncli.diagnosis.search.measurement import (
     beside_the_rest,
@@ -195,6 +196,12 @@ def diagnose_joint(
         alpha=settings.alpha,
     )
     result = found_causes(judging, effects, search)
+    measured = [one.fit for one in result.search.measurement]
+    if (late := shown_by_ripple(result.search.step, measured)) is not None:
+        base = replace(base, late=late)
+        base_new = base_new and replace(base_new, late=late)
+        judging = replace(judging, problem=base, new=base_new, measured=(base, base_new))
+        result = found_causes(judging, effects, search)
     found, lag = result.search, result.lag
     problem, new = result.judging.problem, result.judging.new
     named = named_causes(result.judging, result.judged)

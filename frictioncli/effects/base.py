@@ -163,6 +163,9 @@ class Effect:
         For an effect that comes and goes: the histories to try, from the table
         (:mod:`frictioncli.effects.history`). Such a shape may have further stretches; the columns
         are the same wherever it is there, and zero elsewhere.
+    orders : callable or None
+        For an effect whose columns are sines and cosines of multiples of the angle, in turn: these
+        multiples, from the shape. [1/turn]
     needs : tuple of str
         Columns of the table that must be known and vary for the effect to be tested.
     uses : tuple of str
@@ -198,6 +201,7 @@ class Effect:
     measurement: bool = False
     recurs: bool = False
     moments: Callable[[EffectTable], list[dict[str, float]]] | None = None
+    orders: Callable[..., tuple[float, ...]] | None = None
 
     @property
     def kind(self) -> Kind:

@@ -52,6 +52,11 @@ def basis(table: EffectTable, *, order: float) -> Basis:
     )
 
 
+def orders(*, order: float) -> tuple[float, ...]:
+    """Return the multiples of the angle, of which there are a sine and a cosine each [1/turn]."""
+    return order, 2 * order
+
+
 EFFECT = Effect(
     name="position_ripple",
     summary="Friction varies periodically with the angle.",
@@ -104,6 +109,7 @@ EFFECT = Effect(
         ),
     ),
     basis=basis,
+    orders=orders,
     needs=("position",),
     uses=("angle",),
     signature=Signature(

@@ -39,7 +39,8 @@ def separated(torque, counted: int, **response):
 
 @pytest.mark.parametrize("counted", [1, -1])
 @pytest.mark.parametrize(
-    ("speed", "delay", "time_constant"), [(20.0, 0.02, 0.0), (100.0, 0.012, 0.04)]
+    ("speed", "delay", "time_constant"),
+    [(20.0, 0.02, 0.0), (100.0, 0.012, 0.04), (160.0, 0.012, 0.06)],
 )
 def test_a_ripple_of_friction_shows_in_both_channels(speed, delay, time_constant, counted):
     def torque(angle, way):
@@ -59,11 +60,8 @@ def test_a_ripple_of_friction_shows_in_both_channels(speed, delay, time_constant
         alpha=0.0,
         separate_load=False,
     )
-    assert basis.friction[:, 0] == pytest.approx(friction, abs=0.03)
-    assert basis.load[:, 0] == pytest.approx(load, abs=0.03)
-    # a delay alone is exact but for the sampling
-    if not time_constant:
-        assert basis.load[:, 0] == pytest.approx(load, abs=1e-3)
+    assert basis.friction[:, 0] == pytest.approx(friction, abs=2e-3)
+    assert basis.load[:, 0] == pytest.approx(load, abs=2e-3)
 
 
 @pytest.mark.parametrize("counted", [1, -1])

@@ -12,9 +12,17 @@ response remembers, with mean *D* and variance *S*. An effect that adds
         + \frac{\varphi(q - v t_k) - \varphi(q + v t_k)}{2}\right]
 
 with nodes :math:`t_k` and weights :math:`w_k` of the Gauss rule of two points for a delay and an
-exponential response, which are exact up to the third moment. The base model needs none of this:
-gravity varies so slowly with the angle that the effects ``torque_delay`` and ``torque_filter``,
-the moments of the response, are enough. A ripple of friction does not.
+exponential response, which are exact up to the third moment. Columns that are sines and cosines of
+*N* times the angle have the exact response instead,
+
+.. math::
+    H = \frac{e^{-i \omega (D - \theta)}}{1 + i \omega \theta}, \quad \omega = N v, \quad
+    \theta = \sqrt{S}:
+
+its real part is what each is multiplied by, and its imaginary part what it adds of the other to the
+other channel. A fast ripple hardly passes a filter. The base model needs none of this: gravity
+varies so slowly with the angle that the effects ``torque_delay`` and ``torque_filter``, the moments
+of the response, are enough.
 """
 
 import math
@@ -23,7 +31,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from frictioncli.arrays import Array, Indices
+from frictioncli.arrays import Array, ComplexArray, Indices
 from frictioncli.effects.base import Basis, Effect, EffectTable
 
 _ROOT2 = math.sqrt(2.0)
@@ -74,6 +82,18 @@ class LateTorque:
             for weight, node in zip(_WEIGHTS, _NODES, strict=True)
         )
 
+    def response(self, frequency: Array) -> ComplexArray:
+        """Return the frequency response, shape of the frequencies [-].
+
+        Parameters
+        ----------
+        frequency : ndarray
+            Angular frequencies. [rad/s]
+        """
+        time_constant = math.sqrt(max(self.variance, 0.0))
+        turned = np.exp(-1j * frequency * (self.delay - time_constant))
+        return np.asarray(turned / (1.0 + 1j * frequency * time_constant))
+
 
 def late_basis(
     effect: Effect,
@@ -114,6 +134,12 @@ def late_basis(
     if _MOVING.isdisjoint((*effect.needs, *effect.uses)):
         there = effect.evaluate(table, shape)
         return Basis(there.friction[rows], there.load[rows])
+    if effect.orders is not None:
+        there = effect.evaluate(table, shape)
+        there = Basis(there.friction[rows], there.load[rows])
+        speed = np.radians(table.speed[rows])
+        response = late.response(np.outer(speed, effect.orders(**shape)))
+        return _of_harmonics(there, response, 0.0 if separate_load else counted)
     friction: Array | float = 0.0
     load: Array | float = 0.0
     for weight, time in late.nodes():
@@ -132,6 +158,20 @@ def late_basis(
             friction = friction + counted * weight * load_change
             load = load + counted * weight * friction_change
     return Basis(*(np.broadcast_to(one, size) for one in (friction, load)))
+
+
+def _of_harmonics(there: Basis, response: ComplexArray, counted: float) -> Basis:
+    """Return sines and cosines behind a response, shape (rows, orders), in both channels."""
+
+    def mean_and_half_change(columns: Array) -> tuple[Array, Array]:
+        mean, change = np.empty_like(columns), np.empty_like(columns)
+        for first, way in ((0, 1.0), (1, -1.0)):
+            mean[:, first::2] = response.real * columns[:, first::2]
+            change[:, first::2] = way * response.imag * columns[:, 1 - first :: 2]
+        return mean, change
+
+    (friction, of_friction), (load, of_load) = map(mean_and_half_change, there)
+    return Basis(friction + counted * of_load, load + counted * of_friction)
 
 
 def _mean_and_half_change(
