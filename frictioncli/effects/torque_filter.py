@@ -14,7 +14,10 @@ The first term is that of a delay :math:`\theta`, and stands in
 where a filter behind a delay *d* has
 :math:`s_2 = \theta^2 + \theta d + d^2/2` and a delay alone has half the square of the whole delay
 *D*: the time constant is :math:`\theta = (2 s_2 - D^2)^{1/2}`. Gravity is a sine of the angle, so
-that its third derivative is known from the first.
+that its third derivative is known from the first. The ratio :math:`s_3 / s_2` is a third of a delay
+and the whole of a time constant. It is no parameter of its own: over a stroke on which gravity
+grows all the way the third term is friction that grows with the cube of speed, and a free
+coefficient would take it from any drag.
 """
 
 import numpy as np
@@ -29,9 +32,12 @@ BY_TIME_CONSTANT = (
 
 _RADIANS = np.pi / 180
 
+_RATIO = 0.03
+"""Third moment relative to the second, of a filter of 30 ms. [s]"""
+
 
 def basis(table: EffectTable) -> Basis:
-    """Return the second term of both torques [N·m/s²] and the third of friction [N·m/s³].
+    """Return the second term of both torques, with the third of friction, shape (rows, 1) [N·m/s²].
 
     Parameters
     ----------
@@ -44,14 +50,14 @@ def basis(table: EffectTable) -> Basis:
     twice_alpha = float(table.load_slope @ table.load) / square if square > 0 else 0.0
     bend = twice_alpha * np.square(table.load_gradient) + table.load_slope * table.load_curvature
     third = table.speed**3 * table.load_gradient * _RADIANS**2
-    load = squared * table.load_curvature
-    return Basis(np.column_stack([squared * bend, third]), np.column_stack([load, 0.0 * load]))
+    friction, load = squared * bend + _RATIO * third, squared * table.load_curvature
+    return Basis(friction[:, np.newaxis], load[:, np.newaxis])
 
 
 EFFECT = Effect(
     name="torque_filter",
     summary="The logged torque is smoothed by a filter.",
-    equation="dL = s2*v^2*d2L/dq2, dtau = s2*v^2*d2tau/dq2 - s3*v^3*d3L/dq3",
+    equation="dL = s2*v^2*d2L/dq2, dtau = s2*v^2*d2tau/dq2 - 0.03*s2*v^3*d3L/dq3",
     source="Moments of the impulse response of a first-order filter after a delay",
     channel="load",
     shape=(),
@@ -66,14 +72,6 @@ EFFECT = Effect(
                 "Half the second moment of the filter's response in time: the square of the time"
                 " constant for a filter alone, half the square of the delay for a delay alone"
             ),
-        ),
-        Parameter(
-            name="third_moment",
-            symbol="s3",
-            unit="s³",
-            lower=-0.001,
-            upper=0.03,
-            description="A sixth of the third moment of the filter's response in time",
         ),
     ),
     basis=basis,

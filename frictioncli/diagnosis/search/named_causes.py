@@ -98,7 +98,7 @@ class Judging:
         found : SearchResult
             What the search found.
         """
-        everything = (*_with_shown(found, self.alpha), *found.causes)
+        everything = (*self._with_shown(found), *found.causes)
         # without a margin only what is doubtful for other reasons has no name
         at_all = with_standing(everything, self.problem, 0.0, self.alpha)
         possible = [
@@ -112,6 +112,28 @@ class Judging:
         named = [cause for cause in causes if cause.standing == "named"]
         held = judged_together(named, found.step, self.problem, self.new)
         return JudgedCauses(found=found, causes=_with(causes, held), timing=timing)
+
+    def _with_shown(self, found: SearchResult) -> tuple[Cause, ...]:
+        """Return the effects of the measurement; of significant ones, with what residuals show.
+
+        A delay that the starts of moves show need not show there: friction that grows with speed
+        may hide it.
+        """
+        step, beside = found.step, found.measurement
+        known = {DELAY} if self.starts is not None and self.starts.best != "none" else set()
+        return tuple(
+            replace(
+                one,
+                shown=shown_by_residuals(
+                    step.precomputed,
+                    one.fit,
+                    [*step.accepted, *(other.fit for other in beside if other is not one)],
+                ),
+            )
+            if one.test.p_value < self.alpha and one.fit.effect.name not in known
+            else one
+            for one in beside
+        )
 
     def without_lag(self) -> "Judging":
         """Return the same about the measured temperature."""
@@ -281,24 +303,6 @@ def _with(causes: Sequence[Cause], newer: Sequence[Cause]) -> tuple[Cause, ...]:
     """Return causes, some of them as they are now."""
     known = {one.fit.effect.name: one for one in newer}
     return tuple(known.get(one.fit.effect.name, one) for one in causes)
-
-
-def _with_shown(found: SearchResult, alpha: float) -> tuple[Cause, ...]:
-    """Return the effects of the measurement; of significant ones, with what the residuals show."""
-    step, beside = found.step, found.measurement
-    return tuple(
-        replace(
-            one,
-            shown=shown_by_residuals(
-                step.precomputed,
-                one.fit,
-                [*step.accepted, *(other.fit for other in beside if other is not one)],
-            ),
-        )
-        if one.test.p_value < alpha
-        else one
-        for one in beside
-    )
 
 
 def _names(causes: Sequence[Cause]) -> set[str]:
