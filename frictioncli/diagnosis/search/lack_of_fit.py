@@ -26,9 +26,10 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.added_function import likely_amplitudes
 from frictioncli.diagnosis.fit.columns import reduced
 from frictioncli.diagnosis.fit.left_by_base import left_by, span_of
-from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, Variances
+from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, evaluate
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.noise.discrepancy_functions import SPEED_RIPPLE
@@ -197,6 +198,7 @@ def _structures(step: Step) -> tuple[Structure, ...]:
     known = step.precomputed.start
     starts = replace(step.fit.variances, amplitude=known.amplitude), known
     null = fit_variances(expected, step.products, step.known, *starts)
+    quiet = evaluate(expected, step.products, step.known, known)
     accepted = [problem.basis(one.effect, one.shape) for one in step.accepted]
     span = span_of(problem, [*step.precomputed.measurement, *accepted])
 
@@ -208,7 +210,7 @@ def _structures(step: Step) -> tuple[Structure, ...]:
         if squares <= 0:
             return None
         scale = float(np.sqrt(len(columns) / squares))
-        fit = _beside_function(step, expected, basis, scale, (null.variances, known))
+        fit = _beside_function(step, expected, basis, scale, (null, quiet))
         place = slice(step.known, step.known + columns.shape[1])
         size, interval = realised(
             scale**2 * (left.T @ left) / len(columns),
@@ -281,17 +283,23 @@ def _beside_function(
     expected: Components,
     basis: Basis,
     scale: float,
-    starts: tuple[Variances, ...],
+    nulls: tuple[MixedFit, ...],
 ) -> MixedFit:
-    """Return the fit with one more random function, with the noise that suits it best."""
+    """Return the fit with one more random function, with the noise that suits it best.
+
+    It starts from fits without the function, with an amplitude that is likely beside each.
+    """
     layout = step.problem.layout
     columns = reduced(layout, scale * basis.friction, scale * basis.load)
-    own = Part(columns, step.precomputed.noises)
-    products = step.products.beside([own])
+    products = step.products.beside([Part(columns, step.precomputed.noises)])
     place = slice(step.known, step.known + columns.count)
     amplitude = float(expected.prior[0]) if len(expected.prior) else _unit_amplitude(step)
     components = expected.beside_function(place, amplitude)
-    starts = tuple(replace(one, amplitude=np.append(one.amplitude, amplitude)) for one in starts)
+    likely = likely_amplitudes(components, products, nulls)
+    starts = (
+        replace(one.variances, amplitude=np.append(one.variances.amplitude, own))
+        for one, own in zip(nulls, likely, strict=True)
+    )
     return fit_variances(components, products, place.stop, *starts)
 
 
