@@ -161,6 +161,7 @@ class TransformedColumns:
 
     parts: tuple[Part, ...]
     _modes: dict[tuple[int, int], Array] = field(default_factory=dict)
+    _places: list[Places] = field(default_factory=list)
 
     @property
     def noises(self) -> NoiseModels:
@@ -175,13 +176,15 @@ class TransformedColumns:
     @property
     def places(self) -> Places:
         """Where the columns show."""
-        counts = [part.columns.count for part in self.parts]
-        shown = [part.shown for part in self.parts]
-        friction, load, both = (
-            np.flatnonzero(np.repeat([one == where for one in shown], counts))
-            for where in ((0,), (1,), (0, 1))
-        )
-        return Places((friction, load), both)
+        if not self._places:
+            counts = [part.columns.count for part in self.parts]
+            shown = [part.shown for part in self.parts]
+            friction, load, both = (
+                np.flatnonzero(np.repeat([one == where for one in shown], counts))
+                for where in ((0,), (1,), (0, 1))
+            )
+            self._places.append(Places((friction, load), both))
+        return self._places[0]
 
     def shown(self, channel: int) -> list[Part]:
         """Return the parts that show in a channel, those that show in no other first."""
