@@ -5,7 +5,7 @@ import pytest
 
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.fit.left_by_base import left_by, span_of, visible_size
+from frictioncli.diagnosis.fit.left_by_base import left_by, products_left_by, span_of, visible_size
 from frictioncli.diagnosis.search.effect_size import elsewhere
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.effects import BY_NAME
@@ -27,6 +27,16 @@ def test_what_is_left_is_the_residual_of_both_channels_together(joint, name):
     residual = columns - (base / np.linalg.norm(base, axis=0)) @ fitted
     found = left_by(span_of(joint), basis)
     np.testing.assert_allclose(found, residual, atol=1e-7 * np.abs(columns).max())
+
+
+@pytest.mark.parametrize("name", ["load_linear", "dress_pack", "load_velocity"])
+def test_products_of_what_is_left_are_those_of_its_rows(joint, name):
+    effect = BY_NAME[name]
+    basis = joint.basis(effect, {axis.name: axis.at(0.5) for axis in effect.shape})
+    span = span_of(joint)
+    left = left_by(span, basis)
+    size = np.square(np.vstack(basis)).sum()
+    np.testing.assert_allclose(products_left_by(span, basis), left.T @ left, atol=1e-12 * size)
 
 
 def test_a_constant_that_loads_no_gear_is_not_taken_by_a_constant_that_does(joint):

@@ -146,6 +146,10 @@ def test_coefficients_and_covariance_are_those_of_the_mixed_model_equations(seed
     expected = np.linalg.inv(columns.T @ inverse @ columns + np.diag(precision))
     found = evaluated(world, at)
     np.testing.assert_allclose(found.covariance, expected, rtol=1e-7, atol=1e-10)
+    place = slice(1, 5)
+    np.testing.assert_allclose(
+        found.covariance_of(place), expected[place, place], rtol=1e-7, atol=1e-10
+    )
     np.testing.assert_allclose(
         found.coefficients, expected @ columns.T @ inverse @ data, rtol=1e-7, atol=1e-9
     )

@@ -122,7 +122,7 @@ class BlockCholesky:
             shown = np.concatenate([self.sets[0][number], others])
             found[shown[:, np.newaxis], shown] = self.inverse_beside(number)
         one, two = (self._taken(number) for number in (0, 1))
-        across = one @ self._inverse_of_others() @ two.T
+        across = one @ self.inverse_of_others() @ two.T
         found[first[:, np.newaxis], second] = across
         found[second[:, np.newaxis], first] = across.T
         return found
@@ -135,7 +135,7 @@ class BlockCholesky:
         number : int
             0 or 1, number of the set.
         """
-        taken, middle = self._taken(number), self._inverse_of_others()
+        taken, middle = self._taken(number), self.inverse_of_others()
         width = len(taken)
         found = np.empty((width + len(middle),) * 2)
         weighted = taken @ middle
@@ -145,8 +145,8 @@ class BlockCholesky:
         found[:width, :width] = _inverse(self.roots[number]) + weighted @ taken.T
         return found
 
-    def _inverse_of_others(self) -> Array:
-        """Return the inverse at the other columns, which both sets have beside them."""
+    def inverse_of_others(self) -> Array:
+        """Return the inverse of the matrix at the other columns, which both sets have beside."""
         if not self._of_others:
             self._of_others.append(_inverse(self.root))
         return self._of_others[0]

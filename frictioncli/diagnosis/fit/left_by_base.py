@@ -54,6 +54,25 @@ def left_by(span: Array, basis: Basis) -> Array:
     return np.asarray(columns - span @ (span.T @ columns))
 
 
+def products_left_by(span: Array, basis: Basis) -> Array:
+    """Return inner products of what a span leaves of columns, shape (width, width).
+
+    Parameters
+    ----------
+    span : ndarray, shape (2 * rows, rank)
+        As of :func:`span_of`.
+    basis : Basis
+        The columns in both channels.
+    """
+    width = basis.friction.shape[1]
+    own, along = np.zeros((width, width)), np.zeros((span.shape[1], width))
+    for part, columns in zip(np.split(span, 2), basis, strict=True):
+        if columns.any():
+            own += columns.T @ columns
+            along += part.T @ columns
+    return np.asarray(own - along.T @ along)
+
+
 def visible_size(left: Array, coefficients: Array, covariance: Array) -> tuple[float, float, float]:
     r"""Return the RMS of a combination of columns, with its 95 % interval.
 

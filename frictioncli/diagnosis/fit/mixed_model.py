@@ -175,6 +175,13 @@ class MixedFit:
             found.append(self.factor.inverse_beside(channel) / np.outer(size, size))
         return found[0], found[1]
 
+    def covariance_of(self, place: slice) -> Array:
+        """Return the covariance of the coefficients of columns that show in both channels."""
+        others = self.factor.sets[1]
+        own = np.searchsorted(others, np.arange(place.start, place.stop))
+        inverse = self.factor.inverse_of_others()[np.ix_(own, own)]
+        return np.asarray(inverse / np.outer(self.size[place], self.size[place]))
+
 
 def weights_of(components: Components, variances: Variances, count: int) -> Array:
     """Return the prior precision of each column, shape (count,); 0 where it is free."""

@@ -28,7 +28,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.added_function import likely_amplitudes
 from frictioncli.diagnosis.fit.columns import reduced
-from frictioncli.diagnosis.fit.left_by_base import left_by, span_of
+from frictioncli.diagnosis.fit.left_by_base import products_left_by, span_of
 from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, evaluate
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
@@ -205,17 +205,17 @@ def _structures(step: Step) -> tuple[Structure, ...]:
     def judged(names: tuple[str, ...], channel: Channel, columns: Array) -> _Found | None:
         zeros = np.zeros_like(columns)
         basis = Basis(columns, zeros) if channel == "friction" else Basis(zeros, columns)
-        left = left_by(span, basis)
-        squares = float(np.sum(np.square(left)))
+        left = products_left_by(span, basis)
+        squares = float(np.trace(left))
         if squares <= 0:
             return None
         scale = float(np.sqrt(len(columns) / squares))
         fit = _beside_function(step, expected, basis, scale, (null, quiet))
         place = slice(step.known, step.known + columns.shape[1])
         size, interval = realised(
-            scale**2 * (left.T @ left) / len(columns),
+            scale**2 * left / len(columns),
             fit.coefficients[place],
-            fit.covariance[place, place],
+            fit.covariance_of(place),
         )
         return names, channel, null.objective - fit.objective, size, interval
 
