@@ -20,7 +20,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.bounded import bounded_coefficients, pseudo_inverse
 from frictioncli.diagnosis.fit.columns import basis_columns, joined
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
-from frictioncli.diagnosis.fit.mixed_model import Variances, evaluate
+from frictioncli.diagnosis.fit.mixed_model import MixedFit, Variances
 from frictioncli.diagnosis.fit.planted_columns import WithinProducts, weighted_products
 from frictioncli.diagnosis.fit.transformed_columns import Part
 from frictioncli.diagnosis.fit.variance_components import fit_variances
@@ -142,15 +142,14 @@ class PlantedFits:
         bounds = physical_bounds(torques[0].effect, problem)
         within = WithinProducts.of(step.columns, part)
         fits = cls(step, tuple(torques), part, freed is not None, within, bounds)
-        for one in (step.fit.variances, step.precomputed.start):
+        for one in (step.fit, step.quiet):
             fits.add(one)
         return fits
 
-    def add(self, variances: Variances) -> None:
-        """Add variance components to the family."""
-        step, part = self.step, self.part
-        null = evaluate(step.components, step.products, step.known, variances)
-        across, own = weighted_products(step.columns, part, variances, self.within)
+    def add(self, null: MixedFit) -> None:
+        """Add the variance components of a fit of base and other causes to the family."""
+        part, variances = self.part, null.variances
+        across, own = weighted_products(self.step.columns, part, variances, self.within)
         known = across[:-1]
         right = across[-1] - null.coefficients @ known
         inner = own - known.T @ (null.covariance @ known)
@@ -180,12 +179,13 @@ class PlantedFits:
         """
         step = self.step.planted(self.torques[number].torque, np.array([size]))
         first = len(self.family) == SHARED
-        self.add(step.fit.variances)
+        self.add(self.step.null_under(step.fit.variances))
         if first:
             own = self.part.take(self._places(number)[1].tolist())
             products = step.products.beside([own])
             starts = step.fit.variances, step.precomputed.start
-            self.add(fit_variances(step.components, products, step.known, *starts).variances)
+            fit = fit_variances(step.components, products, step.known, *starts)
+            self.add(self.step.null_under(fit.variances))
 
     def most_statistics(self, number: int, sizes: Array) -> Array:
         """Return twice the log likelihood ratios of the effect if its coefficients had no bounds.

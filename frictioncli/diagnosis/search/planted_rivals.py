@@ -8,7 +8,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.bounded import bounded_coefficients, pseudo_inverse
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.fit.mixed_model import Variances, evaluate
+from frictioncli.diagnosis.fit.mixed_model import Variances
 from frictioncli.diagnosis.fit.planted_columns import WithinProducts, weighted_products
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 from frictioncli.diagnosis.noise.significance import log_bayes_factor
@@ -65,7 +65,7 @@ class PlantedRivals:
         """Return what base and other causes leave of each hypothesis, and its inverse."""
         if id(variances) not in self._left:
             step = self.step
-            null = evaluate(step.components, step.products, step.known, variances)
+            null = step.null_under(variances)
             found = [
                 left_products(self.catalogue, number, step.columns, null)
                 for number in range(len(self.catalogue.hypotheses))

@@ -114,6 +114,15 @@ class Step:
         return found
 
     @property
+    def quiet(self) -> MixedFit:
+        """The null hypothesis under the variance components before anything is fitted."""
+        return self.once("quiet", lambda: self.null_under(self.precomputed.start))
+
+    def null_under(self, variances: Variances) -> MixedFit:
+        """Return the null hypothesis under given variance components."""
+        return evaluate(self.components, self.products, self.known, variances)
+
+    @property
     def problem(self) -> Problem:
         """The data."""
         return self.precomputed.problem
@@ -159,8 +168,7 @@ class Step:
 
         everything = [i for i, one in enumerate(catalogue.hypotheses) if one.name not in skip]
         found = {i: under(i, self.fit) for i in everything}
-        quiet = evaluate(self.components, self.products, self.known, self.precomputed.start)
-        first = {i: under(i, quiet) for i in everything}
+        first = {i: under(i, self.quiet) for i in everything}
         tests = {}
         chosen = set()
         for ranked in (found, first):
@@ -176,7 +184,7 @@ class Step:
                 if int(np.argmax(best_fit.gain)) != best:
                     other = self._refitted(catalogue, number, int(np.argmax(best_fit.gain)))
                     again = min(again, other, key=lambda one: one.objective)
-                null = evaluate(self.components, self.products, self.known, again.variances)
+                null = self.null_under(again.variances)
                 offset = min(self.fit.objective - null.objective, 0.0)
                 best_fit = under(number, null)
                 variances = again.variances
@@ -221,12 +229,7 @@ class Step:
             return self.fitted(effect, found.shape)
         if effect.moments is not None:
             return self._refined_change(found)
-        null = evaluate(
-            self.components,
-            self.products,
-            self.known,
-            self._fit_with(effect, found.shape).variances,
-        )
+        null = self.null_under(self._fit_with(effect, found.shape).variances)
 
         start = np.array([axis.share(found.shape[axis.name]) for axis in axes])
         step = np.array([0.5 / axis.points for axis in axes])
@@ -252,18 +255,17 @@ class Step:
         """
         effect = found.effect
 
-        def refined(shape: dict[str, float], variances: Variances) -> dict[str, float]:
-            null = evaluate(self.components, self.products, self.known, variances)
+        def refined(shape: dict[str, float], null: MixedFit) -> dict[str, float]:
             rows, table = self.problem.rows, self.problem.all_runs
             best = refined_history(
                 shape, table, rows, lambda one: self._gain(effect, one, null) / 2
             )
             return since_start(best, measured_share(table)[rows])
 
-        suited = self._fit_with(effect, found.shape).variances
+        suited = self.null_under(self._fit_with(effect, found.shape).variances)
         starts = [found.shape]
         if found.shape in effect.shapes(self.problem.all_runs):
-            starts.append(refined(found.shape, self.precomputed.start))
+            starts.append(refined(found.shape, self.quiet))
         shapes = [found.shape, *(refined(shape, suited) for shape in starts)]
         fits = [self.fitted(effect, shape) for shape in shapes]
         return max(fits, key=lambda one: one.statistic)
@@ -276,7 +278,7 @@ class Step:
     def fitted(self, effect: Effect, shape: dict[str, float]) -> EffectFit:
         """Return an effect fitted at one shape, the variance components with it."""
         variances = self._fit_with(effect, shape).variances
-        null = evaluate(self.components, self.products, self.known, variances)
+        null = self.null_under(variances)
         alone = self._alone_at(effect, shape)
         found = screened(alone, 0, self.columns, null)
         statistic = float(found.gain[0]) + min(self.fit.objective - null.objective, 0.0)
