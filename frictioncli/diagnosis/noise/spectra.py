@@ -104,7 +104,8 @@ class Spectra:
 
     def all_modes(self, means: Array) -> Modes:
         """Return pair means in the eigenvectors of each correlation time."""
-        return tuple(self.modes_at(time, means) for time in range(len(self.spectra)))
+        scaled = self.scaled(means)
+        return tuple(self.modes(spectrum, scaled) for spectrum in self.spectra)
 
     def from_modes(self, spectrum: Spectrum, modes: Array) -> Array:
         """Return scaled pair means from their modes, the inverse of :meth:`modes`."""
