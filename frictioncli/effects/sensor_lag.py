@@ -6,58 +6,19 @@ of the true temperature,
 .. math:: \Delta\tau = \frac{\partial\tau}{\partial T}\, \theta_s\, \dot T,
 
 lower while heating and higher while cooling than the reading tells. The slope :math:`\dot T` is
-that of a line through the readings of four minutes; where a pause leaves no others, through a pair
-and its neighbours.
+that of :func:`frictioncli.effects.reading_slope.reading_slope`.
 """
 
-import numpy as np
-
-from frictioncli.arrays import Array
 from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
-from frictioncli.effects.pair_series import pair_heads, starts
+from frictioncli.effects.pair_series import pair_heads
 from frictioncli.effects.parameter import Parameter
-
-_HALF_WINDOW = 120.0
-"""Half the window of the line through the readings. [s]"""
-
-
-_LEAST_PAIRS = 3
-"""Least number of pairs in the window. A line across a pause, in which the joint may have warmed by
-many degrees, tells nothing of the slope at its ends."""
+from frictioncli.effects.reading_slope import reading_slope
 
 
 def basis(table: EffectTable) -> Basis:
     """Return the change of friction per time constant of the sensor, shape (rows, 1) [N·m/s]."""
     heads = pair_heads(table)
-    run, time = table.run[heads.first], table.time[heads.first]
-    temperature = table.temperature[heads.first]
-    slope = np.zeros_like(time)
-    begins = np.flatnonzero(starts(run))
-    for begin, end in zip(begins, np.append(begins[1:], len(time)), strict=True):
-        slope[begin:end] = _slopes(time[begin:end], temperature[begin:end])
-    return friction_only(table.temperature_slope * heads.spread(slope))
-
-
-def _slopes(time: Array, value: Array) -> Array:
-    """Return the slope of the line through the values around each time, 0 where there is none."""
-    pairs = np.arange(len(time))
-    low = np.searchsorted(time, time - _HALF_WINDOW, side="left")
-    high = np.searchsorted(time, time + _HALF_WINDOW, side="right")
-    few = high - low < _LEAST_PAIRS
-    low = np.maximum(np.where(few, np.minimum(low, pairs - 1), low), 0)
-    high = np.minimum(np.where(few, np.maximum(high, pairs + 2), high), len(time))
-    count = high - low
-    moved, raised = time - time.mean(), value - value.mean()
-
-    def total(values: Array) -> Array:
-        sums = np.concatenate([[0.0], np.cumsum(values)])
-        return np.asarray(sums[high] - sums[low])
-
-    middle = total(moved) / count
-    spread = total(np.square(moved)) - count * np.square(middle)
-    together = total(moved * raised) - middle * total(raised)
-    known = spread > 1e-9 * np.maximum(np.square(np.ptp(time)), 1e-9)
-    return np.divide(together, spread, out=np.zeros_like(together), where=known)
+    return friction_only(table.temperature_slope * heads.spread(reading_slope(table, heads)))
 
 
 EFFECT = Effect(
@@ -81,6 +42,7 @@ EFFECT = Effect(
     basis=basis,
     measurement=True,
     needs=("time", "temperature", "temperature_slope"),
+    uses=("friction_power", "speed", "position", "motor_temperature", "order"),
     signature=Signature(
         axis="motor_temperature",
         claim=(

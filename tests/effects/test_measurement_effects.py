@@ -133,8 +133,8 @@ def test_a_late_sensor_shows_the_slope_of_a_steady_warming():
         temperature_slope=-0.5,
     )
     column = sensor_lag(rows).friction[:, 0]
-    assert column[: len(time)] == pytest.approx(-0.005)
-    assert column[len(time) :] == pytest.approx(0.0025)
+    assert column[: len(time)] == pytest.approx(-0.005, rel=0.02)
+    assert column[len(time) :] == pytest.approx(0.0025, rel=0.02)
 
 
 def test_warming_in_a_pause_is_no_slope_of_the_pairs_before_and_after_it():
@@ -142,12 +142,60 @@ def test_warming_in_a_pause_is_no_slope_of_the_pairs_before_and_after_it():
     series = np.arange(0.0, 400.0, 20.0)
     time = np.concatenate([series, series + 980.0])
     temperature = np.concatenate([25.0 + 0.001 * series, 37.0 + 0.01 * series])
-    rows = small(time=time, temperature=temperature, temperature_slope=-2.0)
+    order = np.tile(np.arange(len(series)), 2)
+    rows = small(time=time, temperature=temperature, temperature_slope=-2.0, order=order)
     column = sensor_lag(rows).friction[:, 0]
-    assert column[: len(series)] == pytest.approx(-0.002)
-    assert column[len(series) :] == pytest.approx(-0.02)
+    assert column[: len(series)] == pytest.approx(-0.002, abs=0.001)
+    assert column[len(series) :] == pytest.approx(-0.02, abs=0.001)
 
 
 def test_a_single_pair_has_no_slope_of_temperature():
     rows = small(run=[0, 1, 1], time=[0.0, 0.0, 60.0], temperature=[30.0, 30.0, 36.0])
-    assert sensor_lag(rows).friction[:, 0] == pytest.approx([0.0, 0.1, 0.1])
+    alone, *two = sensor_lag(rows).friction[:, 0]
+    assert alone == 0.0
+    assert np.mean(two) == pytest.approx(0.1, rel=0.1)
+
+
+def heated(lag, noise, random):
+    """Return series of slow and fast pairs with readings, and by how much these are too low.
+
+    Losses grow with the temperature, and the heat of moves with the speed. In each pause the joint
+    is heated, more or less, and rests. The first-order response of the sensor to a heat that is
+    constant for half a second is exact.
+    """
+    speeds, step = np.array([20.0, 150.0, 40.0, 100.0, 8.0]), 0.5
+    power, middles, orders, heat = [], [], [], []
+    for _ in range(24):
+        heat += [0.03 * random.random()] * 300 + [0.0] * int(random.integers(20, 200))
+        for order, speed in enumerate(speeds):
+            steps = round(200.0 / speed / step)
+            middles.append(len(heat) + steps // 2)
+            heat += [2e-4 * speed] * steps
+            power.append(speed / 100.0)
+            orders.append(order)
+    true = lfilter([step], [1.0, step / 900.0 - 1.0], heat)
+    kept = np.exp(-step / lag)
+    behind = lfilter([1.0, -1.0], [1.0, -kept], true) * lag * (1 - kept) / step
+    at = np.array(middles)
+    reading = 25.0 + (true - behind)[at] + noise * random.standard_normal(len(at))
+    per_pair = {
+        "time": at * step,
+        "speed": np.tile(speeds, 24),
+        "friction_power": np.array(power),
+        "order": np.array(orders, float),
+        "temperature": reading,
+        "motor_temperature": reading,
+    }
+    rows = {name: np.repeat(values, 2) for name, values in per_pair.items()}
+    pair, position = np.repeat(np.arange(len(at)), 2), np.tile([20.0, 120.0], len(at))
+    return small(**rows, pair=pair, position=position, temperature_slope=-1.0), -behind[at]
+
+
+@pytest.mark.parametrize("lag", [60.0, 90.0, 120.0])
+def test_a_late_sensor_shows_how_its_reading_rises_in_slow_and_in_fast_moves(lag):
+    """A line through the readings of four minutes is off by 10 to 15 %."""
+    rows, too_high = heated(lag, 0.003, np.random.default_rng(0))
+    column = sensor_lag(rows).friction[::2, 0]
+    assert column @ too_high / (column @ column) == pytest.approx(lag, rel=0.05)
+    error = np.linalg.norm(column - too_high / lag)
+    assert error < 0.09 * np.linalg.norm(too_high / lag)
