@@ -28,6 +28,9 @@ _EVEN = 0.5
 _SURE = 0.95
 """Greatest probability of the lag of the gear, where both are in a set."""
 
+_SLOWEST = 120.0
+"""Greatest time constant of a sensor in a winding. [s]"""
+
 _FAR_OFF = 0.02
 """Least RMS misfit of pair means, relative to the mean friction, of a lag that would look like
 other effects as well."""
@@ -50,9 +53,9 @@ def search_with_lag(
     """Search for causes; where a lag of the gear is one, about the temperature of the gear.
 
     A gear that friction warms more than the motor looks much like a sensor that lags: either has
-    friction lower while heating. Where what a sensor leaves of it is not surely worth a name, the
-    search is repeated without the sensor, and a lag of the gear that is then large enough is one of
-    the two.
+    friction lower while heating. Where what a sensor leaves of it is not surely worth a name, or
+    the sensor would have to be slower than any in a winding, the search is repeated without the
+    sensor, and a lag of the gear that is then large enough is one of the two.
 
     Parameters
     ----------
@@ -77,7 +80,7 @@ def search_with_lag(
     """
     refine = partial(refine_thermal, problem, new, measurement=measurement)
     found, lag = _searched(problem, effects, search, refine, margin)
-    if not _has_lag(found) or _left_of_lag(found) > margin:
+    if _left_of_lag(found) > margin if _has_lag(found) else not _is_too_slow(found):
         return found, lag
     share = max(_share_of_lag(found, margin), _share_beyond(found))
     without = partial(search, measurement=_WITHOUT_SENSOR)
@@ -90,6 +93,8 @@ def search_with_lag(
 
 def _share_of_lag(found: SearchResult, margin: float) -> float:
     """Return the probability that beside the lag of a sensor one of the gear is worth a name."""
+    if not _has_lag(found):
+        return _EVEN
     cause = _lag_of(found)
     low, high = cause.visible_interval
     return _probability_above(margin, cause.visible, (high - low) / (2 * Z95))
@@ -97,11 +102,22 @@ def _share_of_lag(found: SearchResult, margin: float) -> float:
 
 def _share_beyond(found: SearchResult) -> float:
     """Return the probability that a sensor would have to lag by more than one does."""
+    late, error = _sensor_lag(found)
+    return _probability_above(TIME_CONSTANT, late, error)
+
+
+def _is_too_slow(found: SearchResult) -> bool:
+    """Return whether a sensor would surely have to lag by more than those in windings do."""
+    late, error = _sensor_lag(found)
+    return late - Z95 * error > _SLOWEST
+
+
+def _sensor_lag(found: SearchResult) -> tuple[float, float]:
+    """Return by how much a sensor lags, and the standard error [s]; 0 where it does not."""
     sensor = next((one.fit for one in found.measurement if one.fit.effect is SENSOR_LAG), None)
     if sensor is None:
-        return _EVEN
-    late, error = sensor.coefficients[0], standard_errors(sensor)[0]
-    return _probability_above(TIME_CONSTANT, float(late), float(error))
+        return 0.0, 0.0
+    return float(sensor.coefficients[0]), float(standard_errors(sensor)[0])
 
 
 def _probability_above(limit: float, value: float, error: float) -> float:
