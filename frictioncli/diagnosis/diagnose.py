@@ -223,7 +223,7 @@ def diagnose_joint(
             problem, new = lag.problem, lag.new
         causes = sizes_in_model(causes, extension, step, named.measurement, base)
     appeared: tuple[Cause, ...] = ()
-    floor = _floor(found)
+    floor = found.floor
     modelled = extension or extend(problem, weighted_fit, fits)
     if new:
         predicted = predicting(modelled, causes)
@@ -317,11 +317,3 @@ def predicting(extension: Extension, causes: Sequence[Cause]) -> Extension:
     }
     effects = tuple(one for number, one in enumerate(extension.effects) if number not in gone)
     return replace(extension, effects=effects)
-
-
-def _floor(found: SearchResult) -> float:
-    """Return the RMS of the noise of a pair's rows in the channels that are simulated."""
-    problem = found.step.problem
-    channels = found.step.noise()[: 1 if problem.has_load_channel else 2]
-    distance = problem.layout.distance
-    return float(np.sqrt(sum(noise.unpredictable(distance) ** 2 for noise in channels)))

@@ -42,6 +42,7 @@ def searched(monkeypatch):
         monkeypatch.setattr(lag_search, "_explains_most", lambda estimate: True)
         monkeypatch.setattr(lag_search, "refine_thermal", estimated)
         monkeypatch.setattr(lag_search, "_as_refined", lambda result, refined: result)
+        monkeypatch.setattr(lag_search, "_left_of_lag", lambda found, measured: 1.0)
         result, lag = lag_search.search_with_lag(
             MEASURED, None, EFFECTS, lambda problem, effects: found(*causes[problem])
         )
@@ -128,6 +129,9 @@ def lags(interval=None, late=60.0):
         (lags((0.1, 0.3)), lags((0.15, 0.3)), FIRST, "beside"),
         (lags((0.1, 0.3)), lags((0.5, 0.7)), None, "beside"),
         (lags(), None, FIRST, "beside"),
+        (lags(late=135.0), None, FIRST, "beside"),
+        (lags(late=150.0), lags((0.5, 0.7)), FIRST, "without"),
+        (lags(late=150.0), lags((0.1, 0.3)), FIRST, "beside"),
     ],
     ids=[
         "clear beside the sensor",
@@ -135,6 +139,9 @@ def lags(interval=None, late=60.0):
         "clear never",
         "no hidden temperature",
         "none beside the sensor",
+        "none beside one that may be a sensor",
+        "none beside one that is too slow",
+        "too slow, and none without it",
     ],
 )
 def test_the_lag_of_a_sensor_is_left_out_only_where_it_hides_one_of_the_gear(
@@ -149,6 +156,9 @@ def test_the_lag_of_a_sensor_is_left_out_only_where_it_hides_one_of_the_gear(
 
     monkeypatch.setattr(lag_search, "_searched", searched)
     monkeypatch.setattr(lag_search, "_lag_or_sensor", lambda cause, share: "the set")
+    monkeypatch.setattr(
+        lag_search, "_left_of_lag", lambda found, measured: found.causes[0].visible_interval[0]
+    )
     monkeypatch.setattr(lag_search, "replace", lambda one, **changed: SimpleNamespace(**changed))
 
     def search(measurement=MEASUREMENT_EFFECTS):
@@ -168,7 +178,7 @@ def test_the_share_of_the_gear_is_that_with_which_it_is_worth_a_name(interval, e
     assert lag_search._share_of_lag(lags(interval), 0.2) == pytest.approx(expected, abs=1e-9)
 
 
-@pytest.mark.parametrize(("late", "expected"), [(60.0, 0.5), (100.0, 0.8413), (160.0, 0.95)])
+@pytest.mark.parametrize(("late", "expected"), [(60.0, 0.5), (130.0, 0.8413), (190.0, 0.95)])
 def test_a_sensor_that_lags_by_minutes_is_more_probably_the_gear(late, expected):
-    """With an error of 10 s; up to 90 s a sensor in a winding may lag."""
+    """With an error of 10 s; up to 120 s a sensor in a winding may lag."""
     assert lag_search._share_beyond(lags(late=late)) == pytest.approx(expected, abs=1e-4)

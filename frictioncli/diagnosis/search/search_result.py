@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import Cause
@@ -47,6 +49,14 @@ class SearchResult:
     dropped: dict[str, str]
     step: Step
     catalogue: Catalogue
+
+    @property
+    def floor(self) -> float:
+        """RMS of the noise of a pair's rows in the channels that are simulated [N·m]."""
+        problem = self.step.problem
+        channels = self.step.noise()[: 1 if problem.has_load_channel else 2]
+        distance = problem.layout.distance
+        return float(np.sqrt(sum(noise.unpredictable(distance) ** 2 for noise in channels)))
 
     def detectable_sizes(
         self,

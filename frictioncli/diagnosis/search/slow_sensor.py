@@ -13,7 +13,7 @@ from frictioncli.effects.base import Effect, applicable
 from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
-TIME_CONSTANT = 90.0
+TIME_CONSTANT = 120.0
 """Time constant up to which a sensor in a winding may lag. [s]"""
 
 

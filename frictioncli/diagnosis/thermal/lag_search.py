@@ -8,11 +8,12 @@ import numpy as np
 from scipy.special import ndtr
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.left_by_base import Z95
+from frictioncli.diagnosis.fit.left_by_base import Z95, left_by
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.possible import standard_errors
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.slow_sensor import TIME_CONSTANT
+from frictioncli.diagnosis.search.stated_size import span_at_measured
 from frictioncli.diagnosis.thermal.estimate import MEASURED, ThermalEstimate
 from frictioncli.diagnosis.thermal.refine import LAG, RefinedLag, refine_thermal
 from frictioncli.effects import MEASUREMENT_EFFECTS
@@ -27,9 +28,6 @@ _EVEN = 0.5
 
 _SURE = 0.95
 """Greatest probability of the lag of the gear, where both are in a set."""
-
-_SLOWEST = 120.0
-"""Greatest time constant of a sensor in a winding. [s]"""
 
 _FAR_OFF = 0.02
 """Least RMS misfit of pair means, relative to the mean friction, of a lag that would look like
@@ -80,12 +78,12 @@ def search_with_lag(
     """
     refine = partial(refine_thermal, problem, new, measurement=measurement)
     found, lag = _searched(problem, effects, search, refine, margin)
-    if _left_of_lag(found) > margin if _has_lag(found) else not _is_too_slow(found):
+    if _left_of_lag(found, problem) > margin if _has_lag(found) else not _is_too_slow(found):
         return found, lag
     share = max(_share_of_lag(found, margin), _share_beyond(found))
     without = partial(search, measurement=_WITHOUT_SENSOR)
     again, refined = _searched(problem, effects, without, refine, margin)
-    if refined is None or _left_of_lag(again) <= margin:
+    if refined is None or _left_of_lag(again, problem) <= margin:
         return found, lag
     causes = (_lag_or_sensor(one, share) if _is_lag(one) else one for one in again.causes)
     return replace(again, causes=tuple(causes)), refined
@@ -109,7 +107,7 @@ def _share_beyond(found: SearchResult) -> float:
 def _is_too_slow(found: SearchResult) -> bool:
     """Return whether a sensor would surely have to lag by more than those in windings do."""
     late, error = _sensor_lag(found)
-    return late - Z95 * error > _SLOWEST
+    return late - Z95 * error > TIME_CONSTANT
 
 
 def _sensor_lag(found: SearchResult) -> tuple[float, float]:
@@ -158,7 +156,7 @@ def _searched(
     else:
         first = None
         found = search(problem, effects)
-    if not _has_lag(found) or _left_of_lag(found) <= margin:
+    if not _has_lag(found) or _lag_of(found).visible_interval[0] <= margin:
         return found, None
     for _ in range(_ROUNDS):
         refined = refine([cause.fit for cause in found.causes])
@@ -201,9 +199,16 @@ def _is_lag(cause: Cause) -> bool:
     return cause.fit.effect.name == LAG
 
 
-def _left_of_lag(found: SearchResult) -> float:
-    """Return the lower bound of what the base leaves of the lag [N·m]."""
-    return _lag_of(found).visible_interval[0]
+def _left_of_lag(found: SearchResult, measured: Problem) -> float:
+    """Return the lower bound of what base and sensor leave of the lag [N·m].
+
+    About the temperature of the gear a sensor that lags is another column, and leaves more.
+    """
+    cause = _lag_of(found)
+    fit, span = cause.fit, span_at_measured(measured, found.measurement)
+    left = left_by(span, found.step.problem.basis(fit.effect, fit.shape)) @ fit.coefficients
+    size = float(np.linalg.norm(left)) / np.sqrt(len(left) / 2)
+    return cause.visible_interval[0] * min(size / max(cause.visible, 1e-300), 1.0)
 
 
 def _lag_of(found: SearchResult) -> Cause:
