@@ -8,6 +8,7 @@ from scipy import special
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import RANK, base_rows
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.effects.base import Basis
 from frictioncli.linear_algebra import orthonormal_basis
 
@@ -52,6 +53,32 @@ def left_by(span: Array, basis: Basis) -> Array:
     """
     columns = np.vstack(basis)
     return np.asarray(columns - span @ (span.T @ columns))
+
+
+def torque_left_by(span: Array, problem: Problem, fit: EffectFit) -> Array:
+    """Return what a span leaves of the torque of a fitted effect, shape (2 * rows,) [N·m].
+
+    Parameters
+    ----------
+    span : ndarray, shape (2 * rows, rank)
+        As of :func:`span_of`.
+    problem : Problem
+        The rows.
+    fit : EffectFit
+        The effect.
+    """
+    return np.asarray(left_by(span, problem.basis(fit.effect, fit.shape)) @ fit.coefficients)
+
+
+def rms_left(left: Array) -> float:
+    """Return the RMS of a torque that a span leaves, of both channels together [N·m].
+
+    Parameters
+    ----------
+    left : ndarray, shape (2 * rows,)
+        The torque, friction above load. [N·m]
+    """
+    return float(np.linalg.norm(left)) / np.sqrt(len(left) / 2)
 
 
 def products_left_by(span: Array, basis: Basis) -> Array:

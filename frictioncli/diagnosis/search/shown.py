@@ -8,7 +8,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of
+from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, torque_left_by
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.effects.base import Basis
 
@@ -71,7 +71,7 @@ def shown_by_residuals(known: Precomputed, fit: EffectFit, others: Sequence[Effe
     misfit = Basis(problem.friction_misfit[:, np.newaxis], problem.load_misfit[:, np.newaxis])
     span = span_of(problem, beside)
     one_direction = _in_one_direction(problem, fit, span)
-    torque = left_by(span, problem.basis(fit.effect, fit.shape)) @ fit.coefficients
+    torque = torque_left_by(span, problem, fit)
     if not torque.any():
         return WHOLE
     by_rows = [torque * left_by(span, misfit)[:, 0], np.square(torque)]

@@ -7,7 +7,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.left_by_base import left_by
+from frictioncli.diagnosis.fit.left_by_base import left_by, rms_left, torque_left_by
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.effects.base import Effect, applicable
 from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
@@ -70,11 +70,10 @@ def is_in_size_of(effect: Effect, causes: Sequence[Cause]) -> bool:
 
 def _beside_any(sensor: Array, cause: Cause, problem: Problem, span: Array) -> Cause:
     """Return a lag whose interval holds what is left of it beside any sensor of a winding."""
-    fit = cause.fit
-    both = left_by(span, problem.basis(fit.effect, fit.shape)) @ fit.coefficients
+    both = torque_left_by(span, problem, cause.fit)
     nearest = float(both @ sensor) / max(float(sensor @ sensor), 1e-300)
     alone, slow, least = (
-        float(np.linalg.norm(both - late * sensor)) / np.sqrt(len(both) / 2)
+        rms_left(both - late * sensor)
         for late in (0.0, TIME_CONSTANT, np.clip(nearest, 0.0, TIME_CONSTANT))
     )
     low, high = cause.visible_interval

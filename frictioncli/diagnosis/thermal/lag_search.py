@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.left_by_base import Z95, left_by
+from frictioncli.diagnosis.fit.left_by_base import Z95, rms_left, torque_left_by
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.possible import standard_errors
 from frictioncli.diagnosis.search.search_result import SearchResult
@@ -205,10 +205,9 @@ def _left_of_lag(found: SearchResult, measured: Problem) -> float:
     About the temperature of the gear a sensor that lags is another column, and leaves more.
     """
     cause = _lag_of(found)
-    fit, span = cause.fit, span_at_measured(measured, found.measurement)
-    left = left_by(span, found.step.problem.basis(fit.effect, fit.shape)) @ fit.coefficients
-    size = float(np.linalg.norm(left)) / np.sqrt(len(left) / 2)
-    return cause.visible_interval[0] * min(size / max(cause.visible, 1e-300), 1.0)
+    span = span_at_measured(measured, found.measurement)
+    left = torque_left_by(span, found.step.problem, cause.fit)
+    return cause.visible_interval[0] * min(rms_left(left) / max(cause.visible, 1e-300), 1.0)
 
 
 def _lag_of(found: SearchResult) -> Cause:
