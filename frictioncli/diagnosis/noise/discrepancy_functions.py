@@ -15,6 +15,9 @@ FINE = ("fine position",)
 _FINE_ORDERS = (17, 32)
 """Least and greatest order of the cosines of a fine function of the angle."""
 
+_LATE = 0.03
+"""By how much a torque is typically late. [s]"""
+
 _FRICTION = (
     ("position",),
     ("speed",),
@@ -52,8 +55,7 @@ def functions_of(table: EffectTable) -> list[tuple[Channel, tuple[str, ...], Arr
     found += [("friction", *one) for one in _of_fine_angle(table)]
     found += [("load", *one) for one in _functions(table, _LOAD)]
     found += [("load", *one) for one in _of_fine_angle(table)]
-    found += [("load", *one) for one in _of_speed_ripple(table)]
-    return found
+    return [*found, *_of_speed_ripple(table)]
 
 
 def _functions(
@@ -85,17 +87,24 @@ def _of_fine_angle(table: EffectTable) -> list[tuple[tuple[str, ...], Array]]:
     return [(FINE, np.cos(np.pi * order * place[:, np.newaxis]))]
 
 
-def _of_speed_ripple(table: EffectTable) -> list[tuple[tuple[str, ...], Array]]:
+def _of_speed_ripple(table: EffectTable) -> list[tuple[Channel, tuple[str, ...], Array]]:
     r"""Return the inertial torque of a speed that ripples, where speeds differ.
 
     A ripple over the angle that is a share of the speed has the acceleration
-    :math:`v\,dv/dq`, which grows with its square.
+    :math:`v\,dv/dq`, which grows with its square. It may have any order, so that all weigh the same.
+    Behind a late torque what stands in the load forward and in reverse differs, by the more the
+    faster the ripple passes: half the difference looks like friction.
     """
-    if not {"position", "speed"} <= set(ranges_of(table)):
+    ranges = ranges_of(table)
+    if not {"position", "speed"} <= set(ranges):
         return []
-    ((_, along),) = _functions(table, (("position",),))
     squared = np.square(table.speed / np.max(table.speed))[:, np.newaxis]
-    return [(SPEED_RIPPLE, squared * along)]
+    load = squared * CosineSeries.of(("position",), table, ranges).columns(table, ranges)
+    order = np.arange(1, load.shape[1] + 1)
+    low, high = ranges["position"]
+    turned = _LATE * np.pi * order * (table.speed / (high - low))[:, np.newaxis]
+    friction = turned / np.sqrt(1.0 + np.square(turned)) * load
+    return [("friction", SPEED_RIPPLE, friction), ("load", SPEED_RIPPLE, load)]
 
 
 def _form(table: EffectTable) -> Array:
