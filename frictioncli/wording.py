@@ -1,6 +1,7 @@
 """Numbers, counts and names as text, for messages, tables and figures."""
 
 import math
+import re
 from collections.abc import Sequence
 
 _MOST_NAMES = 5
@@ -12,7 +13,7 @@ _SPELLINGS = {
     # a moment is also a torque
     "moment": "start",
 }
-"""Parts of identifiers that are written otherwise in a sentence."""
+"""Identifiers, or their beginnings, that are written otherwise in a sentence."""
 
 _SHORT = 0.5
 """Times below are stated in milliseconds. [s]"""
@@ -91,9 +92,11 @@ def in_words(name: str) -> str:
     --------
     >>> in_words("thermal_lag"), in_words("run_in"), in_words("coulomb_temperature")
     ('thermal lag', 'run-in', 'Coulomb temperature')
+    >>> in_words("step_change: moment"), in_words("second_moment")
+    ('step change: start', 'second moment')
     """
     for identifier, written in _SPELLINGS.items():
-        name = name.replace(identifier, written)
+        name = re.sub(rf"\b{identifier}", written, name)
     return name.replace("_", " ")
 
 
