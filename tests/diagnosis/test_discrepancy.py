@@ -45,7 +45,8 @@ def weight(one):
     """Return the expected size of a function relative to a main effect of friction."""
     if one.axes == FINE:
         return 0.2
-    return 0.6 if one.channel == "load" or len(one.axes) == 2 else 1.0
+    minor = one.channel == "load" or len(one.axes) == 2 or one.axes == SPEED_RIPPLE
+    return 0.6 if minor else 1.0
 
 
 def test_what_the_base_leaves_of_each_function_has_its_size(joint):
@@ -130,20 +131,36 @@ def test_what_is_finer_than_a_smooth_function_has_an_amplitude_of_its_own(joint,
     assert left[0] < 0.2 * np.linalg.norm(torque) < 0.8 * np.linalg.norm(torque) < left[1]
 
 
-def test_a_ripple_of_the_speed_grows_with_its_square(joint):
-    """The acceleration of the fastest pairs and of the slowest, at the same angle.
+@pytest.mark.parametrize("late", [0.0, 0.02, 0.06])
+def test_the_inertia_of_a_speed_that_ripples_shows_in_friction_where_the_torque_is_late(
+    joint, late
+):
+    """Torque of an acceleration of six periods a turn, taken where each move was that long before.
 
     Less what is the base's: gravity, the same at all speeds.
     """
     smooth = smooth_of(joint)
-    (one,) = (one for one in smooth.components if one.axes == SPEED_RIPPLE)
     table = joint.table
-    order = 6 * np.radians(table.position)
-    torque = np.concatenate([np.zeros(len(order)), np.square(table.speed / 100.0) * np.cos(order)])
-    span, own = span_of(joint), orthogonal(smooth)[:, one.columns]
-    torque -= span @ (span.T @ torque)
-    left = torque - own @ np.linalg.lstsq(own, torque, rcond=None)[0]
-    assert np.linalg.norm(left) < 0.1 * np.linalg.norm(torque)
+    forward, reverse = (
+        np.square(table.speed / 100.0)
+        * np.cos(6 * np.radians(table.position - way * late * table.speed))
+        for way in (1, -1)
+    )
+    span = span_of(joint)
+    for channel, torque in (("friction", forward - reverse), ("load", forward + reverse)):
+        (one,) = (
+            one for one in smooth.components if (one.axes, one.channel) == (SPEED_RIPPLE, channel)
+        )
+        zero = 0.0 * torque
+        both = [torque, zero] if channel == "friction" else [zero, torque]
+        column = np.concatenate(both) / 2
+        column -= span @ (span.T @ column)
+        own = orthogonal(smooth)[:, one.columns]
+        left = column - own @ np.linalg.lstsq(own, column, rcond=None)[0]
+        whole = np.linalg.norm((forward, reverse))
+        assert np.linalg.norm(left) < 0.1 * whole
+        if late == 0.06 and channel == "friction":
+            assert np.linalg.norm(column) > 0.2 * whole
 
 
 def test_errors_of_form_are_those_of_the_exponents_and_of_coulomb_friction(joint):

@@ -11,8 +11,9 @@ coefficients of the base model are free, so that only the part of a function tha
 the base counts [2]_; it is this part that has the amplitude. The amplitude :math:`\omega` of
 each function is at least its share of 0.75 % of the mean friction; above that it has a lognormal
 prior, and is estimated with each rival in place. In either channel a further function has what is
-finer along the angle than the smooth one, with an amplitude of its own. One more function in load
-stands for the inertia of a speed that ripples with the angle.
+finer along the angle than the smooth one, with an amplitude of its own. One more function in either
+stands for the inertia of a speed that ripples with the angle: it is a load, and shows in friction
+where the torque is late.
 
 Errors of the base's parameters are what a function adds along the base's columns, where no data
 show it. There its amplitude is known as well as beforehand only: its mean square under the
@@ -50,8 +51,8 @@ _FORM_ERRORS = 2.0
 they look like its parameters: exponents are fitted to one joint, and differ from joint to joint."""
 
 _MINOR_WEIGHT = 0.6
-"""The same of functions of two quantities and of those in the load channel: main effects are larger
-than interactions, and gravity is better known than friction."""
+"""The same of functions of two quantities, of a ripple of the speed, and of those in the load
+channel: main effects are larger than interactions, and gravity is better known than friction."""
 
 _FINE_WEIGHT = 0.2
 """The same of a fine function of the angle: a smooth one would have 0.08 in its orders."""
@@ -267,7 +268,7 @@ def weight_of(axes: tuple[str, ...], channel: Channel) -> float:
     """
     if axes == FINE:
         return _FINE_WEIGHT
-    return _MINOR_WEIGHT if channel == "load" or len(axes) == 2 else 1.0
+    return _MINOR_WEIGHT if channel == "load" or len(axes) == 2 or axes == SPEED_RIPPLE else 1.0
 
 
 def _of_errors(axes: tuple[str, ...], columns: Array) -> Array:

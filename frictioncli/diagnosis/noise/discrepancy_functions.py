@@ -50,12 +50,19 @@ def functions_of(table: EffectTable) -> list[tuple[Channel, tuple[str, ...], Arr
         Channel of each function, the quantities that it depends on, or :data:`FORM`, :data:`FINE`
         or :data:`SPEED_RIPPLE`, and its columns, shape (rows, columns).
     """
-    found: list[tuple[Channel, tuple[str, ...], Array]] = [("friction", FORM, _form(table))]
-    found += [("friction", *one) for one in _functions(table, _FRICTION)]
-    found += [("friction", *one) for one in _of_fine_angle(table)]
-    found += [("load", *one) for one in _functions(table, _LOAD)]
-    found += [("load", *one) for one in _of_fine_angle(table)]
-    return [*found, *_of_speed_ripple(table)]
+    ripple = _of_speed_ripple(table)
+    friction = [
+        (FORM, _form(table)),
+        *_functions(table, _FRICTION),
+        *_of_fine_angle(table),
+        *((SPEED_RIPPLE, late) for late, _ in ripple),
+    ]
+    load = [
+        *_functions(table, _LOAD),
+        *_of_fine_angle(table),
+        *((SPEED_RIPPLE, torque) for _, torque in ripple),
+    ]
+    return [*(("friction", *one) for one in friction), *(("load", *one) for one in load)]
 
 
 def _functions(
@@ -87,8 +94,8 @@ def _of_fine_angle(table: EffectTable) -> list[tuple[tuple[str, ...], Array]]:
     return [(FINE, np.cos(np.pi * order * place[:, np.newaxis]))]
 
 
-def _of_speed_ripple(table: EffectTable) -> list[tuple[Channel, tuple[str, ...], Array]]:
-    r"""Return the inertial torque of a speed that ripples, where speeds differ.
+def _of_speed_ripple(table: EffectTable) -> list[tuple[Array, Array]]:
+    r"""Return what the inertia of a speed that ripples adds to friction and load, if speeds differ.
 
     A ripple over the angle that is a share of the speed has the acceleration
     :math:`v\,dv/dq`, which grows with its square. It may have any order, so that all weigh the same.
@@ -104,7 +111,7 @@ def _of_speed_ripple(table: EffectTable) -> list[tuple[Channel, tuple[str, ...],
     low, high = ranges["position"]
     turned = _LATE * np.pi * order * (table.speed / (high - low))[:, np.newaxis]
     friction = turned / np.sqrt(1.0 + np.square(turned)) * load
-    return [("friction", SPEED_RIPPLE, friction), ("load", SPEED_RIPPLE, load)]
+    return [(friction, load)]
 
 
 def _form(table: EffectTable) -> Array:
