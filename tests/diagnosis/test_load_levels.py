@@ -40,6 +40,17 @@ def test_recordings_that_carry_a_load_in_turns_are_told():
     assert found not in informative_shapes(BY_NAME["step_change"], data)
 
 
+def test_a_load_in_every_other_pair_is_told_however_many_pairs_there_are():
+    def load(rows):
+        return 5.0 * (number(rows) % 2) * np.cos(np.radians(rows["position"] + 20.0))
+
+    data = problem(2, load=load, every=4)
+    pairs = len(data.layout.time)
+    assert pairs > 2 * PAIRS - 2
+    expected = [(begin / pairs, (begin + 1) / pairs) for begin in range(1, pairs, 2)]
+    assert stretches(two_level_history(data)) == pytest.approx(expected)
+
+
 @pytest.mark.parametrize(
     "amount",
     [

@@ -20,8 +20,6 @@ Halves of an even distribution are 3.5 apart, those of a sine 4.1."""
 _FEWEST = 3
 """Pairs in the smaller group."""
 
-_MOST_STRETCHES = 40
-
 
 def two_level_history(problem: Problem) -> Shape | None:
     """Return when the pairs of a problem carry another load, several times; None if they do not.
@@ -45,7 +43,7 @@ def two_level_history(problem: Problem) -> Shape | None:
         return None
     edges = np.append(known, _after(problem, known[-1]))
     parts = _stretches(there != there[0], edges)
-    return history(parts) if 1 < len(parts) <= _MOST_STRETCHES else None
+    return history(parts) if len(parts) > 1 else None
 
 
 def _along_greatest(problem: Problem, pair: Indices, count: int) -> Array:
