@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, hypothesis_of, physical_bounds
+from frictioncli.diagnosis.noise.significance import credible_set, posterior_probabilities
 from frictioncli.diagnosis.search import cause_search, rivals
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause_search import find_causes
@@ -209,6 +210,28 @@ def test_a_rival_falls_behind_by_no_more_than_a_form_may_miss(catalogue):
     # a tenth of the whole is a hundredth of the evidence, and a ninth where a third is left of it
     assert whole == pytest.approx(tests["near"].log_bayes_factor + 0.005 * own.statistic)
     assert little == factor
+
+
+def test_many_that_explain_nothing_are_in_no_credible_set_though_together_they_are_probable(
+    catalogue,
+):
+    """Fifteen waves that the data do not have, each of a probability of half a percent."""
+    others = [effect(f"b{number}", [(1.0, B)]) for number in range(15)]
+    effects = catalogue(THREE[0], *others)
+    data = problem(6, friction=lambda rows: 0.5 * A(rows))
+    precomputed = Precomputed.of(data, discrepancy=0.0)
+    step = Step.of(precomputed, [])
+    tests = step.tested(Catalogue.of(precomputed, [hypothesis_of(one, data) for one in effects]))
+    own = step.refined(tests["a"].effect_fit(THREE[0]))
+    factor = tests["a"].log_bayes_factor
+    low = factor - 5.2 - rivals.evidence_missed(own.statistic, 1.0)
+    tests |= {one.name: replace(tests[one.name], log_bayes_factor=low) for one in others}
+    found = rivals.rival_log_bayes_factors(step, own, factor, tests)
+    assert credible_set(posterior_probabilities(found)) == ("a",)
+    twin = replace(tests["a"], name="twin", log_bayes_factor=low)
+    catalogue(*effects, effect("twin", [(1.0, A)]))
+    found = rivals.rival_log_bayes_factors(step, own, factor, {**tests, "twin": twin})
+    assert "twin" in found
 
 
 def test_effects_that_explain_the_same_share_a_credible_set(catalogue):

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest
+from frictioncli.diagnosis.noise.significance import credible_set, posterior_probabilities
 from frictioncli.diagnosis.search.possible import lies_on_bound
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
@@ -14,7 +15,8 @@ _REFINED = 3
 """Number of effects whose shapes are refined off the grid before the best is accepted."""
 
 _NEARLY = 5.0
-"""Log Bayes factor below that of a cause at which another effect is too improbable to matter."""
+"""Log Bayes factor below that of a cause at which another effect is too improbable to matter,
+unless it is one of many."""
 
 _FORM = 0.1
 """What the form of an entry may miss of an effect, relative to its size: two standard
@@ -86,11 +88,22 @@ def rival_log_bayes_factors(
         for name, one in tests.items()
         if name != own.effect.name
     }
-    return {own.effect.name: factor} | {
-        name: value
-        for name, value in near.items()
-        if value < factor - _NEARLY or _explains(step, own, tests[name])
-    }
+    share = {own.effect.name: factor} | near
+    judged = {own.effect.name}
+    while True:
+        # many that explain nothing are together more probable than each is
+        members = credible_set(posterior_probabilities(share))
+        doubtful = [
+            name
+            for name, value in share.items()
+            if name not in judged and (value >= factor - _NEARLY or name in members)
+        ]
+        if not doubtful:
+            return share
+        judged.update(doubtful)
+        for name in doubtful:
+            if not _explains(step, own, tests[name]):
+                del share[name]
 
 
 def evidence_missed(statistic: float, left_share: float) -> float:
