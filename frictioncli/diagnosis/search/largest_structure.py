@@ -29,6 +29,10 @@ INADEQUATE = 2.5
 
 Days differ a little anyway, by what is weak and in no model: up to 2.4 on 90 simulated joints."""
 
+BETWEEN_DAYS = 0.03
+"""Least difference of the friction of a whole run from the others that is more than days differ by,
+relative to the mean friction."""
+
 LEAST_PART = 0.1
 """Share of the mean square of a misfit from which on it varies with an axis."""
 
@@ -96,7 +100,8 @@ def inadequacy(
 ) -> Structure | None:
     """Return what a model lacks on a new run as structure; None where its misfit may be noise.
 
-    Along time where it varies with nothing that is measured: it is of that run.
+    Along time where it varies with nothing that is measured: it is of that run. By how much the
+    friction of days differs anyway, in constant parts and in proportion, is not lacking.
 
     Parameters
     ----------
@@ -109,6 +114,7 @@ def inadequacy(
     margin : float
         Smallest size worth a name. [N·m]
     """
+    friction = friction - _between_days(problem, friction)
     square = float(np.mean(problem.squared(friction, load)))
     rest = square - floor**2
     if square <= (INADEQUATE * floor) ** 2 or rest <= margin**2:
@@ -131,6 +137,15 @@ def inadequacy(
         interval=interval,
         only_on=problem.runs[-1],
     )
+
+
+def _between_days(problem: Problem, misfit: Array) -> Array:
+    """Return the part of a misfit of friction by which days differ; 0 where that is too much."""
+    simulated = problem.friction - misfit
+    columns = np.column_stack([np.ones_like(simulated), simulated])
+    part = np.asarray(columns @ np.linalg.lstsq(columns, misfit)[0])
+    most = BETWEEN_DAYS * float(np.mean(np.abs(problem.friction)))
+    return part if float(np.sqrt(np.mean(np.square(part)))) < most else np.zeros_like(part)
 
 
 def largest_structure(

@@ -33,6 +33,7 @@ from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, phys
 from frictioncli.diagnosis.noise.significance import NullDistribution, log_bayes_factor
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
+from frictioncli.diagnosis.search.largest_structure import BETWEEN_DAYS
 from frictioncli.diagnosis.search.new_run import parts_of
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.effects.base import Basis, Channel, Effect
@@ -54,9 +55,6 @@ ADEQUATE = 1.25
 
 _EXPLAINED = 0.8
 """Least share of the mean square that is left beyond the noise, for a change to be its cause."""
-
-_BETWEEN_DAYS = 0.03
-"""Least change that begins with the run, relative to the mean friction: days differ by less."""
 
 _CLEARLY = 30.0
 """Statistic by which a change explains more than each of its rivals."""
@@ -193,7 +191,7 @@ def _change(
     low, high = (size + way * _Z95 * np.hypot(error, _FORM * size) for way in (-1, 1))
     needed = margin
     if present(share.min(), best) and effect.channel == "friction":
-        needed = max(needed, _BETWEEN_DAYS * float(np.mean(np.abs(new.friction))))
+        needed = max(needed, BETWEEN_DAYS * float(np.mean(np.abs(new.friction))))
     if (
         p_value > BEYOND_DOUBT
         or factor < CONVINCING

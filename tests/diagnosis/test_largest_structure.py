@@ -1,0 +1,35 @@
+"""What a model lacks on a run that was kept out, beyond what days differ by."""
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.search.largest_structure import inadequacy
+from tests.diagnosis.dense_noise import problem
+
+FLOOR = 0.02
+"""RMS of the noise, far below 1 % of the friction. [N·m]"""
+
+
+def lacking(misfit_of, share):
+    """Return what is lacking where a misfit of so large a share of the friction is left (RMS)."""
+    data = problem(4)
+    misfit = misfit_of(data)
+    misfit = misfit * share * np.mean(data.friction) / np.sqrt(np.mean(np.square(misfit)))
+    noise = np.random.default_rng(0).normal(0, FLOOR, (2, len(misfit)))
+    return inadequacy(data, misfit + noise[0], noise[1], floor=FLOOR, margin=0.1)
+
+
+@pytest.mark.parametrize(
+    "of_the_day", [lambda data: np.ones_like(data.friction), lambda data: data.friction]
+)
+def test_a_day_with_a_little_more_or_less_friction_lacks_nothing(of_the_day):
+    for share in (0.02, -0.02):
+        assert lacking(of_the_day, share) is None
+    found = lacking(of_the_day, 0.05)
+    assert found.axes == ("time",)
+    assert found.channel == "friction"
+
+
+def test_what_varies_with_the_speed_alone_is_lacking_though_it_is_as_small():
+    found = lacking(lambda data: np.cos(4 * np.log(data.table.speed)), 0.02)
+    assert found.axes == ("speed",)
