@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.axis_columns import axis_columns
 from frictioncli.diagnosis.search.cause import Cause
@@ -19,8 +20,10 @@ from frictioncli.diagnosis.search.without_a_name import (
     change_over_time,
 )
 from frictioncli.effects import BY_NAME
-from tests.diagnosis.dense_noise import problem
+from frictioncli.model.friction import FrictionParameters
+from tests.diagnosis.dense_noise import days, problem
 from tests.diagnosis.wave_effects import B, effect, wave
+from tests.equation_16 import TRUTH
 
 MARGIN = 0.1
 ALPHA = 0.05
@@ -180,7 +183,33 @@ def structure_of(size, *axes, channel="friction"):
     ],
 )
 def test_a_cause_is_part_of_structure(name, unnamed, expected):
-    assert is_part(BY_NAME[name], 1.0, unnamed) is expected
+    shape = {"moment": 0.3, "end": 0.6} if "change" in name else {"velocity": 10.0}
+    own = EffectFit(BY_NAME[name], shape, np.array([1.0]), np.eye(1), 1.0)
+    assert is_part(own, 1.0, unnamed, problem(5)) is expected
+
+
+@pytest.mark.parametrize(
+    ("runs", "distance", "expected"),
+    [
+        (["day1"], 3e3, True),
+        # it goes on while the joint cools down again
+        (["day1"], 1e6, False),
+        # the second day is as cold, without it
+        (["day1", "day2"], 3e3, False),
+    ],
+)
+def test_what_is_there_in_the_coldest_pairs_alone_may_be_a_part_of_the_temperature(
+    runs, distance, expected
+):
+    """A joint that warms up and cools down on every day, and runs in on the first one."""
+    rows = days(5)
+    rows = rows[rows["run"].isin(runs)]
+    gravity = np.array([95.0, 0.0, 0.0])
+    _, data = simulated(rows, "motor", FrictionParameters(**TRUTH), gravity)
+    own = EffectFit(BY_NAME["run_in"], {"distance": distance}, np.array([3.0]), np.eye(1), 1.0)
+    assert is_part(own, 1.0, structure_of(0.4, "temperature"), data) is expected
+    assert not is_part(own, 1.0, structure_of(0.3, "temperature"), data)
+    assert is_part(own, 1.0, structure_of(0.4, "time"), data)
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from frictioncli.arrays import Array
+from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.pair_neighbours import numbered
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import FORM
@@ -71,6 +72,13 @@ _LOOKS_LIKE_SMOOTH = (
 
 _LOOKS_LIKE_FORM = "errors in the form of {other} may look the same"
 
+_APART = 0.98
+"""Share of pairs of pairs, one with a change and one without, of which the same is warmer, from
+which the change goes with the temperature."""
+
+_OF_TIME = frozenset({"clock", "order", "travel"})
+"""Inputs that are of time."""
+
 _GRADUAL = frozenset({"temperature", "motor_temperature", "clock", "travel"})
 """Inputs that change gradually with the temperature or with time."""
 
@@ -95,6 +103,46 @@ def confounded(effect: Effect, problem: Problem) -> str:
     if effect is BACKLASH and float(np.ptp(np.log(problem.layout.speed))) < np.log(_ONE_SPEED):
         return _GOES_WITH_DELAY
     return _GOES_WITH_RUN if _goes_with_run(effect, problem) else ""
+
+
+def goes_with_temperature(fit: EffectFit, problem: Problem) -> bool:
+    """Return whether an effect of time or travel has its torque at one end of the temperatures.
+
+    What is gone after the first pairs of a joint that warms up is there in the coldest ones alone,
+    where friction that depends on temperature would look the same.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect, with its shape.
+    problem : Problem
+        The joint's rows.
+    """
+    if _OF_TIME.isdisjoint(fit.effect.needs) or not has_temperature(problem):
+        return False
+    torque = main_channel(problem.basis(fit.effect, fit.shape), fit.effect) @ fit.coefficients
+    temperature = problem.table.measured_temperature
+    of_pairs = problem.layout.means(np.column_stack([torque, temperature]))
+    there = of_pairs[:, 0] > (of_pairs[:, 0].min() + of_pairs[:, 0].max()) / 2
+    return are_warmer_or_colder(there, of_pairs[:, 1])
+
+
+def are_warmer_or_colder(there: Flags, temperature: Array) -> bool:
+    """Return whether some pairs are warmer than the others, or colder, nearly without exception.
+
+    Parameters
+    ----------
+    there : ndarray of bool, shape (pairs,)
+        Which pairs.
+    temperature : ndarray, shape (pairs,)
+        Temperature of all. [°C]
+    """
+    rank = pd.Series(temperature).rank().to_numpy()
+    some, others = int(there.sum()), int((~there).sum())
+    if not some or not others:
+        return False
+    warmer = (float(rank[there].sum()) - some * (some + 1) / 2) / (some * others)
+    return max(warmer, 1 - warmer) >= _APART
 
 
 def unclaimed(effect: Effect, problem: Problem) -> str:

@@ -255,7 +255,7 @@ class _Judge:
         if low <= self.margin:
             return True
         structure = self.rules.structure
-        if structure is not None and is_part(fit.effect, left, structure):
+        if structure is not None and is_part(fit, left, structure, step.problem):
             return True
         # what is not above the margin is no structure
         least = max(MOST_LEFT * left, self.margin)

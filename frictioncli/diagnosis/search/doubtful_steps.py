@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 
 from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.motion_history import pauses_of
@@ -12,7 +11,11 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.data.temperature_direction import temperature_direction
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.confounded import NO_TEMPERATURE, has_temperature
+from frictioncli.diagnosis.search.confounded import (
+    NO_TEMPERATURE,
+    are_warmer_or_colder,
+    has_temperature,
+)
 from frictioncli.effects.history import present
 from frictioncli.effects.pair_series import measured_share
 from frictioncli.effects.payload_change import EFFECT as PAYLOAD_CHANGE
@@ -28,10 +31,6 @@ _AT_TEMPERATURE = (
     "it comes in each run at the same temperature, where friction that depends on temperature would"
     " look the same"
 )
-
-_APART = 0.98
-"""Share of pairs of pairs, one with a change and one without, of which the same is warmer, from
-which the change goes with the temperature."""
 
 _SEVERAL = 2
 """Runs in which a change comes or goes, or series of pairs, from which it recurs."""
@@ -195,10 +194,7 @@ def _at_temperature(fit: EffectFit, problems: Sequence[Problem]) -> str:
         return ""
     there = np.concatenate([part for part, _ in parts])
     temperature = np.concatenate([_temperature(one) for one in problems])
-    rank = pd.Series(temperature).rank().to_numpy()
-    with_it, without = int(there.sum()), int((~there).sum())
-    warmer = (float(rank[there].sum()) - with_it * (with_it + 1) / 2) / (with_it * without)
-    return _AT_TEMPERATURE if max(warmer, 1 - warmer) >= _APART else ""
+    return _AT_TEMPERATURE if are_warmer_or_colder(there, temperature) else ""
 
 
 def _temperature(problem: Problem) -> Array:

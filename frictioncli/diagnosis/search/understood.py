@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 
+from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.confounded import goes_with_temperature
 from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.effects.base import Effect
 from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
 
 MOST_LEFT = 1 / 3
@@ -37,9 +39,9 @@ def understood(
 ) -> tuple[tuple[Cause, ...], Structure | None]:
     """Return the causes that are named, and the structure without a name that is left.
 
-    A cause loses its name to structure along its own axis that is nearly as large, a change of
-    friction to any that is larger: both may be one thing that no effect explains. The structure is
-    then what is left without it.
+    A cause loses its name to structure along its own axis that is nearly as large, or along the
+    temperature if it goes with that, and a change of friction to any that is larger: both may be
+    one thing that no effect explains. The structure is then what is left without it.
 
     Parameters
     ----------
@@ -56,7 +58,7 @@ def understood(
     structure = structure_beside(step, named, margin, alpha)
     if structure is None:
         return named, None
-    kept = tuple(one for one in named if not is_part(one.fit.effect, one.visible, structure))
+    kept = tuple(one for one in named if not is_part(one.fit, one.visible, structure, step.problem))
     if len(kept) < len(named):
         lost = {one.fit.effect.name for one in named} - {one.fit.effect.name for one in kept}
         rest = [one for one in step.accepted if one.effect.name not in lost]
@@ -96,21 +98,26 @@ def _is_form_of(cause: Cause, unnamed: Structure) -> bool:
     return same and own and unnamed.size < _FORM * cause.size
 
 
-def is_part(effect: Effect, visible: float, unnamed: Structure) -> bool:
+def is_part(fit: EffectFit, visible: float, unnamed: Structure, problem: Problem) -> bool:
     """Return whether a cause may be a part of structure without a name.
 
     Parameters
     ----------
-    effect : Effect
-        The cause.
+    fit : EffectFit
+        The cause, with its shape.
     visible : float
         What the base leaves of it. [N·m]
     unnamed : Structure
         The structure.
+    problem : Problem
+        The rows: what is there at one end of the temperatures alone shows along these as well.
     """
+    effect = fit.effect
     if effect.measurement or effect.channel != unnamed.channel:
         return False
     along = {_AXES.get(one, one) for one in effect.needs}
+    if goes_with_temperature(fit, problem):
+        along.add("temperature")
     if along.isdisjoint(_AXES.get(one, one) for one in unnamed.axes):
         return effect is STEP_CHANGE and unnamed.size > _MOST_BESIDE * visible
     return unnamed.size > MOST_LEFT * visible
