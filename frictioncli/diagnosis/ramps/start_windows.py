@@ -5,6 +5,7 @@ torque and acceleration is then no work of the smoothing. Positions are known at
 the smoothed value of a signal *x* is the slope of its integral along a cubic spline.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,6 +41,9 @@ _DISTANCES = (0.3, 3.0)
 
 _SHORTEST_RIPPLE = 24.0
 """Shortest period of what friction may vary with along the angle. [deg]"""
+
+_FEWEST_SAMPLES = 3
+"""Samples that tell an even clock from their stamps."""
 
 _SAME_SPEED = 0.03
 """Relative width of a speed level."""
@@ -141,12 +145,57 @@ class _Grid:
         first = rows.groupby("move", sort=False).first()
         position, torque = (np.empty((len(first), len(since))) for _ in range(2))
         known = np.empty((len(first), len(since)), bool)
-        for number, (_, one) in enumerate(rows.groupby("move", sort=False)):
-            time = one["since"].to_numpy(float)
+        moves = [one for _, one in rows.groupby("move", sort=False)]
+        times = sampling_times(
+            [(one["since"].to_numpy(float), one["position"].to_numpy(float)) for one in moves],
+            period,
+        )
+        for number, (time, one) in enumerate(zip(times, moves, strict=True)):
             position[number] = np.interp(since, time, one["position"].to_numpy(float))
             torque[number] = np.interp(since, time, one["torque"].to_numpy(float))
             known[number] = (since > time[0] - period / 2) & (since < time[-1] + period / 2)
         return cls(first, since, position, torque, known)
+
+
+def sampling_times(moves: Sequence[tuple[Array, Array]], period: float) -> list[Array]:
+    """Return when samples were taken: as they are stamped, or evenly if motion is smoother then.
+
+    A controller samples by its clock. A logger on a network stamps what arrives, early or late;
+    with the speed that is noise of the position, and the torque would seem to be smeared by what
+    removes it.
+
+    Parameters
+    ----------
+    moves : sequence of (ndarray, ndarray), each of shape (samples,)
+        Times [s] and positions [deg] of each move.
+    period : float
+        Sampling period. [s]
+    """
+    stamped = [time for time, _ in moves]
+    even = [_evenly(time, period) for time in stamped]
+    positions = [position for _, position in moves]
+    rough, smooth = (
+        sum(_roughness(time, position) for time, position in zip(times, positions, strict=True))
+        for times in (stamped, even)
+    )
+    return even if smooth < rough else stamped
+
+
+def _evenly(time: Array, period: float) -> Array:
+    """Return the times of an even clock for samples of which some may be missing [s]."""
+    if len(time) < _FEWEST_SAMPLES:
+        return time
+    number = np.append(0.0, np.cumsum(np.maximum(np.round(np.diff(time) / period), 1.0)))
+    slope, start = np.polyfit(number, time, 1)
+    return np.asarray(start + slope * number)
+
+
+def _roughness(time: Array, position: Array) -> float:
+    """Return the sum of squares by which positions miss the chord of their neighbours [deg²]."""
+    width = np.maximum(time[2:] - time[:-2], np.finfo(float).tiny)
+    share = (time[1:-1] - time[:-2]) / width
+    chord = (1 - share) * position[:-2] + share * position[2:]
+    return float(np.sum(np.square(position[1:-1] - chord)))
 
 
 def _assembled(grid: _Grid, sign: int, problem: Problem, temperature: str) -> StartWindows:
