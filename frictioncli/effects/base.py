@@ -7,7 +7,7 @@ Shape parameters change the columns; coefficients multiply them.
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from itertools import product
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -18,6 +18,8 @@ Channel = Literal["friction", "load"]
 CHANNELS: tuple[Channel, Channel] = ("friction", "load")
 
 Kind = Literal["friction", "load", "measurement"]
+
+_Found = TypeVar("_Found")
 
 REFERENCE_TEMPERATURE = 25.0
 """Reference temperature of effects. [°C]"""
@@ -104,14 +106,27 @@ class EffectTable:
     travel: Array
     rest: Array
     order: Array
-    _angles: list[Array] = field(default_factory=list, init=False, repr=False, compare=False)
+    _found: dict[Callable[["EffectTable"], Any], Any] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @property
     def angles(self) -> Array:
         """Centres of the angle bins, each once, in order. [deg]."""
-        if not self._angles:
-            self._angles.append(np.unique(self.position))
-        return self._angles[0]
+        return self.once(_angles)
+
+    def once(self, function: Callable[["EffectTable"], _Found]) -> _Found:
+        """Return what a function makes of the table, worked out when it is first asked for.
+
+        Parameters
+        ----------
+        function : callable
+            A function of a module or a class, of the table alone.
+        """
+        if function not in self._found:
+            self._found[function] = function(self)
+        found: _Found = self._found[function]
+        return found
 
 
 class Basis(NamedTuple):
@@ -277,6 +292,11 @@ def applicable(effects: Iterable[Effect], table: EffectTable) -> tuple[Effect, .
         Pairs and angle bins.
     """
     return tuple(effect for effect in effects if not missing_columns(effect, table))
+
+
+def _angles(table: EffectTable) -> Array:
+    """Return the centres of the angle bins, each once, in order. [deg]."""
+    return np.unique(table.position)
 
 
 def _varies(column: np.ndarray) -> bool:

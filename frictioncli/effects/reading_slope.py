@@ -32,7 +32,7 @@ from scipy.linalg import cho_solve_banded, cholesky_banded
 from frictioncli.arrays import Array, Flags
 from frictioncli.effects.base import EffectTable
 from frictioncli.effects.friction_heat import friction_power
-from frictioncli.effects.pair_series import PairHeads, starts
+from frictioncli.effects.pair_series import PairHeads, pair_heads, starts
 
 _TIME_CONSTANT = 90.0
 """Time constant with which a reading follows heat; sensors in a winding have 60 to 120 s. [s]"""
@@ -120,21 +120,20 @@ class _Heat:
     spread: float
 
 
-def reading_slope(table: EffectTable, heads: PairHeads) -> Array:
+def reading_slope(table: EffectTable) -> Array:
     """Return the rate of change of the temperature of each pair.
 
     Parameters
     ----------
     table : EffectTable
         Pairs and angle bins.
-    heads : PairHeads
-        Positions of its pairs.
 
     Returns
     -------
     ndarray, shape (pairs,)
         Its mean given the readings; 0 in a run of one pair. [°C/s]
     """
+    heads = pair_heads(table)
     if len(heads.first) < 2:
         return np.zeros(len(heads.first))
     balance = _balance(table, heads)

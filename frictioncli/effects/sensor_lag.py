@@ -17,8 +17,8 @@ from frictioncli.effects.reading_slope import reading_slope
 
 def basis(table: EffectTable) -> Basis:
     """Return the change of friction per time constant of the sensor, shape (rows, 1) [N·m/s]."""
-    heads = pair_heads(table)
-    return friction_only(table.temperature_slope * heads.spread(reading_slope(table, heads)))
+    slope = pair_heads(table).spread(table.once(reading_slope))
+    return friction_only(table.temperature_slope * slope)
 
 
 EFFECT = Effect(

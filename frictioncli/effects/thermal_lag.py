@@ -142,7 +142,8 @@ def basis(table: EffectTable, *, time_constant: float) -> Basis:
     time_constant : float
         Time constant of the gear. [s]
     """
-    excess = ThermalInputs.of(table).excess(time_constant)[pair_heads(table).of_row]
+    inputs = table.once(ThermalInputs.of)
+    excess = inputs.excess(time_constant)[pair_heads(table).of_row]
     return friction_only(*(table.temperature_slope * column for column in excess.T))
 
 

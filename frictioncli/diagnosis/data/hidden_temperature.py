@@ -72,7 +72,7 @@ class HiddenTemperature(msgspec.Struct, frozen=True, kw_only=True):
         table : EffectTable
             Pairs and angle bins of all runs.
         """
-        inputs = ThermalInputs.of(table)
+        inputs = table.once(ThermalInputs.of)
         if self.housing_time_constant is None:
             return inputs
         return replace(inputs, housing=None).with_hidden_housing(self.housing_time_constant)

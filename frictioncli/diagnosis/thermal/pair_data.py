@@ -85,7 +85,7 @@ class ThermalData:
         heads = pair_heads(problem.all_runs)
         means = layout.means(rows)
         return cls(
-            inputs=ThermalInputs.of(problem.all_runs),
+            inputs=problem.all_runs.once(ThermalInputs.of),
             pairs=np.unique(heads.of_row[problem.rows]),
             root_speed=layout.means(np.sqrt(table.speed)[:, np.newaxis])[:, 0],
             target=means[:, -1],
