@@ -1,5 +1,7 @@
 """The spectra are the noise that they stand for."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -98,3 +100,16 @@ def test_runs_of_a_single_pair_have_no_drift_of_their_own():
     for spectrum in spectra.spectra:
         assert spectrum.time > 0
         np.testing.assert_allclose(spectrum.values, 1 / spectra.profile)
+
+
+def test_pairs_at_the_same_time_have_the_same_drift():
+    """Pairs that share moves may have one middle: the drift is the same in both."""
+    times = np.array([0.0, 60.0, 60.0, 200.0, 200.0, 260.0])
+    pairs = replace(layout(6), time=times)
+    for spectrum in spectra_of(pairs, 0.3, np.zeros(6), np.ones(6)).spectra:
+        (vectors,) = spectrum.vectors
+        found = vectors @ np.diag(spectrum.values) @ vectors.T
+        expected = np.exp(-np.abs(times[:, None] - times) / spectrum.time)
+        np.testing.assert_allclose(found, expected, atol=1e-5)
+        within = np.sum(np.var(np.linalg.cholesky(expected + 1e-9 * np.eye(6)), axis=0))
+        assert spectrum.within == pytest.approx(within, abs=1e-5)

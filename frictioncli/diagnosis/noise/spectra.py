@@ -19,6 +19,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import eigh_tridiagonal
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.pair_layout import PairLayout
@@ -31,6 +32,10 @@ NoiseIndex = tuple[int, int]
 
 _DECIMALS = 9
 """Of the profile, so that those of one form are equal whatever their scale was."""
+
+_SHORTEST, _LONGEST = 1e-6, 30.0
+"""Distances of neighbouring pairs relative to the correlation time that are told from none, and
+from any longer one. Beyond these, denormal numbers would slow the decomposition down."""
 
 _TIMES = 6
 """Number of correlation times, from the distance of the pairs to the length of the run."""
@@ -172,16 +177,20 @@ def _spectrum(
 ) -> Spectrum:
     values, vectors, squares = [], [], 0.0
     for part in runs:
-        lag = np.abs(time[part, np.newaxis] - time[np.newaxis, part])
         root = np.sqrt(profile[part])
-        # denormal numbers would slow the decomposition down a hundredfold
-        correlation = np.where(
-            lag < 30 * correlation_time, np.exp(-np.minimum(lag / correlation_time, 30.0)), 0.0
+        step = np.clip(np.diff(time[part]) / correlation_time, _SHORTEST, _LONGEST)
+        # the drift is a Markov process: the inverse of its correlation is tridiagonal
+        diagonal, beside = np.ones(len(root)), 1.0 / np.expm1(2 * step)
+        diagonal[1:] += beside
+        diagonal[:-1] += beside
+        coupling = -np.exp(step) * beside * root[1:] * root[:-1]
+        inverse, eigenvectors = eigh_tridiagonal(
+            diagonal * profile[part], coupling, check_finite=False
         )
-        eigenvalues, eigenvectors = np.linalg.eigh(correlation / np.outer(root, root))
-        values.append(np.maximum(eigenvalues, 0.0))
+        values.append(1.0 / inverse)
         vectors.append(eigenvectors)
-        squares += len(root) * (1 - float(np.mean(correlation)))
+        correlation = values[-1] @ np.square(root @ eigenvectors)
+        squares += len(root) - float(correlation) / len(root)
     return Spectrum(
         correlation_time, np.concatenate(values), tuple(vectors), squares / len(profile)
     )
