@@ -9,7 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.gravity import NAMES
 from frictioncli.diagnosis.data.load_levels import two_level_history
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.columns import ModelColumns, main_channel, reduced
+from frictioncli.diagnosis.fit.columns import ModelColumns, joined, main_channel, reduced
 from frictioncli.diagnosis.fit.mixed_model import Variances
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.effects.base import Effect
@@ -20,6 +20,9 @@ from frictioncli.quantities import TORQUE
 _USUAL_FRICTION = 20.0
 """Mean friction torque up to which the catalogue's bounds in units of torque hold; the bounds of a
 joint with more friction grow in proportion. [N·m]"""
+
+_AT_ONCE = 8
+"""Shapes whose rows are reduced together: those of more would not fit into a processor's cache."""
 
 _CANCELLED = 0.1
 """Share of the greatest load that an offset and a constant that the gear carries may cancel."""
@@ -71,8 +74,13 @@ def hypothesis_of(
     tried = informative_shapes(effect, problem) if shapes is None else list(shapes)
     bases = [problem.basis(effect, shape) for shape in tried]
     rms = [np.sqrt(np.mean(np.square(main_channel(basis, effect)), axis=0)) for basis in bases]
-    beside = (np.hstack(channel) for channel in zip(*bases, strict=True))
-    columns = reduced(problem.layout, *beside)
+    parts = [bases[first : first + _AT_ONCE] for first in range(0, len(bases), _AT_ONCE)]
+    columns = joined(
+        [
+            reduced(problem.layout, *(np.hstack(channel) for channel in zip(*part, strict=True)))
+            for part in parts
+        ]
+    )
     lower, upper = physical_bounds(effect, problem)
     return Hypothesis(
         name=effect.name,
