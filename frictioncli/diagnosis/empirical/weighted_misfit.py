@@ -25,8 +25,8 @@ from frictioncli.diagnosis.fit.weighted_fit import Weights
 from frictioncli.effects.base import Basis
 from frictioncli.model.noise import Noise
 
-_AT_ONCE = 60
-"""Shapes whose columns are weighted together."""
+_AT_ONCE = 20
+"""Shapes whose columns are weighted together: those of more would not fit into a cache."""
 
 _FINER = 4
 """Places of a peak that are tried for each of the grid, once it is among the best forms."""
