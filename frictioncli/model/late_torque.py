@@ -10,14 +10,16 @@ Over angles on one side of the balance of gravity this looks like friction that 
 speed, and a fit without it is wrong by many of its standard errors. Within a pair it changes sign
 and size with the slope of gravity, and with the speed at every angle; no friction that belongs to
 the angle does both. *d* is therefore the coefficient of :math:`-v\, dL/dq` beside one level per
-pair and one per angle (two-way fixed effects [1]_), with an error that allows for whatever pairs or
-angles share [2]_.
+pair and one per angle (two-way fixed effects [1]_).
+
+Friction by load that grows with speed, as :math:`L^2 \sqrt{v}` does, does both, too. Products of
+powers of load and speed are therefore estimated beside *d*, with coefficients that are likely small
+(:mod:`frictioncli.model.shrunk_regression`); the load itself is among them, for an offset of the
+torque that nothing carries. Without them, 1 N·m of such friction counted as a delay of -20 ms.
 
 References
 ----------
 .. [1] B. H. Baltagi, Econometric Analysis of Panel Data, 2021, doi:10.1007/978-3-030-53953-5.
-.. [2] K.-Y. Liang and S. L. Zeger, "Longitudinal data analysis using generalized linear models,"
-   Biometrika 73(1), 1986, doi:10.1093/biomet/73.1.13.
 """
 
 from dataclasses import dataclass
@@ -25,7 +27,9 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from frictioncli.arrays import Array, Indices
+from frictioncli.arrays import Array, Flags, Indices
+from frictioncli.model.shrunk_regression import ShrunkRegression
+from frictioncli.model.two_way_levels import TOLERANCE, Levels
 from frictioncli.model.zero_load import PAIR_KEY
 
 _GREATEST_ERROR = 0.01
@@ -37,11 +41,18 @@ _FORM = (0.001, 0.05)
 _POSSIBLE = (-0.02, 0.2)
 """Delays that logs have; what looks like another one is something else. [s]"""
 
+_LEAST_FREEDOM = 10
+"""Degrees of freedom from which residuals tell the noise."""
+
 _ANGLES = 400
 """Greatest number of different angles that have a level of their own."""
 
-_TOLERANCE = 1e-9
-"""Share of the squared length below which nothing is left of a column."""
+_FORM_OF_LOAD = 0.1
+"""Standard error by the form of friction over load and speed, as a share of what it changed."""
+
+_LOAD_POWERS = (1.0, 1.5, 2.0)
+_SPEED_POWERS = (0.5, 0.75, 1.0)
+"""Powers of load and of speed whose products friction may contain."""
 
 FREED = "what this adds is taken off friction"
 """What a note on a delay says of a model that was fitted to friction freed of it."""
@@ -88,17 +99,7 @@ def late_column(torques: pd.DataFrame) -> Array:
     >>> bool(np.allclose(late_column(rows), 60.0 * np.radians(50.0) * np.sin(np.radians(angle))))
     True
     """
-    angle = np.radians(torques["position"].to_numpy(float))
-    load = torques["load_torque"].to_numpy(float)
-    slope = np.zeros(len(torques))
-    keys = [torques["run"]]
-    keys += [torques[name].astype(float) for name in ("payload", "pose") if name in torques]
-    for rows in torques.groupby(keys, sort=False, observed=True, dropna=False).indices.values():
-        own = angle[rows]
-        columns = np.column_stack([np.cos(own), np.sin(own), np.ones(len(own))])
-        cosine, sine, _ = np.linalg.lstsq(columns, load[rows], rcond=1e-6)[0]
-        slope[rows] = np.radians(sine * np.cos(own) - cosine * np.sin(own))
-    return -torques["speed"].to_numpy(float) * slope
+    return -torques["speed"].to_numpy(float) * _gravity(torques)[1]
 
 
 def torque_delay(torques: pd.DataFrame) -> TorqueDelay | None:
@@ -117,37 +118,34 @@ def torque_delay(torques: pd.DataFrame) -> TorqueDelay | None:
     """
     pair = torques.groupby(PAIR_KEY, sort=False, observed=True).ngroup().to_numpy()
     angle = _angles(torques["position"].to_numpy(float))
-    friction, load = torques["friction_torque"].to_numpy(float), torques["load_torque"]
-    late = late_column(torques)
-    known = np.isfinite(friction) & np.isfinite(late)
+    friction = torques["friction_torque"].to_numpy(float)
+    columns, shrunk = _columns(torques)
+    known = np.isfinite(friction) & np.isfinite(columns[:, 0])
     pair, angle = _numbered(pair[known]), _numbered(angle[known])
     if len(pair) < 3:
         return None
-    levels = _Levels.of(pair, angle)
-    columns = np.column_stack([late[known], np.square(load.to_numpy(float)[known])])
+    levels = Levels.of(pair, angle)
+    size = np.sqrt(np.mean(np.square(columns[known]), axis=0))
+    columns = columns[known] / np.where(size > 0.0, size, 1.0)
     left = levels.taken_off(columns)
-    length = np.linalg.norm(left, axis=0)
-    before = np.linalg.norm(columns, axis=0)
-    if length[0] ** 2 <= _TOLERANCE * max(before[0], 1e-300) ** 2:
+    is_left = np.mean(np.square(left), axis=0) > TOLERANCE
+    freedom = len(pair) - len(levels.pairs) - levels.rank - int(np.sum(is_left & ~shrunk))
+    if not is_left[0] or freedom < _LEAST_FREEDOM:
         return None
-    kept = [0, 1] if length[1] ** 2 > _TOLERANCE * before[1] ** 2 else [0]
-    units = left[:, kept] / length[kept]
-    inverse = np.linalg.pinv(units.T @ units)
-    target = levels.taken_off(friction[known][:, np.newaxis])[:, 0]
-    coefficients = inverse @ (units.T @ target)
-    residual = target - units @ coefficients
-    freedom = max(len(residual) - len(levels.pairs) - levels.rank - len(kept), 1)
-    score = units * residual[:, np.newaxis]
-    variance = [float(inverse[0, 0] * (residual @ residual) / freedom)]
-    for cluster in (pair, angle):
-        sums = np.column_stack([np.bincount(cluster, one) for one in score.T])
-        variance.append(float((inverse @ (sums.T @ sums) @ inverse)[0, 0]))
-    value = float(coefficients[0] / length[0])
-    own = float(np.sqrt(max(variance)) / length[0])
-    found = TorqueDelay(value, float(np.linalg.norm([own, _FORM[0], _FORM[1] * value])))
-    low, high = found.interval
-    possible = high >= _POSSIBLE[0] and low <= _POSSIBLE[1]
-    return found if found.error <= _GREATEST_ERROR and possible else None
+    usual = float(np.mean(np.abs(friction[known]))) or 1.0
+    found = ShrunkRegression(
+        columns=left[:, is_left],
+        target=levels.taken_off(friction[known][:, np.newaxis])[:, 0],
+        unit=np.where(shrunk, usual, np.inf)[is_left],
+        pair=pair,
+        angle=angle,
+        freedom=freedom,
+    ).first()
+    value, own, change = (one / size[0] for one in (found.value, found.error, found.change))
+    errors = [own, _FORM[0], _FORM[1] * value, _FORM_OF_LOAD * change]
+    delay = TorqueDelay(float(value), float(np.linalg.norm(errors)))
+    possible = _POSSIBLE[0] <= delay.value <= _POSSIBLE[1]
+    return delay if delay.error <= _GREATEST_ERROR and possible else None
 
 
 def without_delay(torques: pd.DataFrame, delay: float | None) -> pd.DataFrame:
@@ -166,51 +164,36 @@ def without_delay(torques: pd.DataFrame, delay: float | None) -> pd.DataFrame:
     return torques.assign(friction_torque=torques["friction_torque"] - added)
 
 
-@dataclass(frozen=True, slots=True)
-class _Levels:
-    """One level per pair and one per angle, which are taken off columns.
+def _columns(torques: pd.DataFrame) -> tuple[Array, Flags]:
+    """Return the columns of a delay, of the load term and of what it adds with speed, if anything.
 
-    Attributes
-    ----------
-    pair, angle : ndarray of int, shape (rows,)
-        Numbers of both.
-    pairs : ndarray, shape (pairs,)
-        Rows of each pair.
-    inverse : ndarray, shape (angles, angles)
-        Pseudo-inverse of the inner products of the angles' columns within the pairs.
-    rank : int
-        Number of levels of angles that the pairs determine.
+    The second result tells the last ones. Gravity stands for the load in them: the noise of a load
+    that is measured would weaken columns that look like one another.
     """
+    speed = torques["speed"].to_numpy(float)
+    gravity, slope = _gravity(torques)
+    carried = np.abs(gravity)
+    loads = [gravity, *(carried**power for power in _LOAD_POWERS)]
+    beside = [load * speed**power for load in loads for power in _SPEED_POWERS]
+    square = np.square(gravity)
+    columns = np.column_stack([-speed * slope, square, *beside])
+    return columns, np.arange(columns.shape[1]) > 1
 
-    pair: Indices
-    angle: Indices
-    pairs: Array
-    inverse: Array
-    rank: int
 
-    @classmethod
-    def of(cls, pair: Indices, angle: Indices) -> "_Levels":
-        pairs = np.bincount(pair).astype(float)
-        count = int(angle.max()) + 1
-        both = np.bincount(pair * count + angle, minlength=len(pairs) * count)
-        both = both.reshape(len(pairs), count).astype(float)
-        products = np.diag(both.sum(axis=0)) - both.T @ (both / pairs[:, np.newaxis])
-        values, vectors = np.linalg.eigh(products)
-        kept = values > _TOLERANCE * max(float(values[-1]), 1e-300)
-        inverse = (vectors[:, kept] / values[kept]) @ vectors[:, kept].T
-        return cls(pair, angle, pairs, inverse, int(kept.sum()))
-
-    def taken_off(self, columns: Array) -> Array:
-        """Return what the levels leave of columns, shape (rows, columns)."""
-        return np.column_stack([self._taken_off(column) for column in columns.T])
-
-    def _taken_off(self, column: Array) -> Array:
-        within = self._within(column)
-        by_angle = np.bincount(self.angle, within, minlength=len(self.inverse))
-        return within - self._within((self.inverse @ by_angle)[self.angle])
-
-    def _within(self, column: Array) -> Array:
-        return np.asarray(column - (np.bincount(self.pair, column) / self.pairs)[self.pair])
+def _gravity(torques: pd.DataFrame) -> tuple[Array, Array]:
+    """Return gravity [N·m] and its slope [N·m/deg] by the load of each run, payload and pose."""
+    angle = np.radians(torques["position"].to_numpy(float))
+    load = torques["load_torque"].to_numpy(float)
+    gravity, slope = np.zeros(len(torques)), np.zeros(len(torques))
+    keys = [torques["run"]]
+    keys += [torques[name].astype(float) for name in ("payload", "pose") if name in torques]
+    for rows in torques.groupby(keys, sort=False, observed=True, dropna=False).indices.values():
+        own = angle[rows]
+        columns = np.column_stack([np.cos(own), np.sin(own), np.ones(len(own))])
+        cosine, sine, constant = np.linalg.lstsq(columns, load[rows], rcond=1e-6)[0]
+        gravity[rows] = columns @ np.array([cosine, sine, constant])
+        slope[rows] = np.radians(sine * np.cos(own) - cosine * np.sin(own))
+    return gravity, slope
 
 
 def _angles(position: Array) -> Indices:
