@@ -120,7 +120,12 @@ def torque_delay(torques: pd.DataFrame) -> TorqueDelay | None:
     angle = _angles(torques["position"].to_numpy(float))
     friction = torques["friction_torque"].to_numpy(float)
     columns, shrunk = _columns(torques)
-    known = np.isfinite(friction) & np.isfinite(columns[:, 0])
+    # where a move begins and ends it may not be constant, and few speeds reach the outermost angles
+    ends = torques.groupby(PAIR_KEY, sort=False, observed=True)["position"]
+    inner = torques["position"].between(
+        ends.transform("min"), ends.transform("max"), inclusive="neither"
+    )
+    known = np.isfinite(friction) & np.isfinite(columns[:, 0]) & inner.to_numpy()
     pair, angle = _numbered(pair[known]), _numbered(angle[known])
     if len(pair) < 3:
         return None
