@@ -37,9 +37,26 @@ PROBLEM = SimpleNamespace(
 )
 
 
-def logged(*, delay=0.0, time_constant=0.0, sign=1, every=12, noise=0.3, seed=0):
-    """Moves at four speeds, sampled at 1 kHz, and logged every 12 ms; friction builds up late."""
-    speeds = np.tile([20.0, 45.0, 80.0, 110.0], 5)
+SPEEDS = (20.0, 45.0, 80.0, 110.0)
+
+
+def logged(
+    *,
+    delay=0.0,
+    time_constant=0.0,
+    sign=1,
+    every=12,
+    noise=0.3,
+    seed=0,
+    speeds=SPEEDS,
+    onset=0.0,
+    inertia=0.1,
+):
+    """Moves at four speeds, sampled at 1 kHz, and logged every 12 ms; friction builds up late.
+
+    ``onset`` is the angle in which friction after a start reaches 63 %, from 40 % on. [deg]
+    """
+    speeds = np.tile(speeds, 5)
     motion = move_sequence([0, 100] * 10 + [0], speeds, period=FINE, rest=0.4)
     velocity = motion["velocity"].to_numpy()
     angle = np.radians(motion["position"].to_numpy())
@@ -47,7 +64,12 @@ def logged(*, delay=0.0, time_constant=0.0, sign=1, every=12, noise=0.3, seed=0)
     friction = friction_torque(FRICTION, load=gravity, speed=np.abs(velocity), temperature=30.0)
     # over the first 0.01 deg or so, as the contact deforms
     friction = lfilter([0.2], [1.0, -0.8], np.sign(velocity) * friction)
-    torque = gravity + sign * friction + 0.1 * motion["acceleration"].to_numpy()
+    if onset:
+        position = motion["position"].to_numpy()
+        begins = np.append(True, np.diff(np.sign(velocity)) != 0)
+        start = np.maximum.accumulate(np.where(begins, np.arange(len(begins)), 0))
+        friction = friction * (1 - 0.6 * np.exp(-np.abs(position - position[start]) / onset))
+    torque = gravity + sign * friction + inertia * motion["acceleration"].to_numpy()
     late = round(delay / FINE)
     torque = np.concatenate([np.full(late, torque[0]), torque[: len(torque) - late]])
     if time_constant:
@@ -95,6 +117,25 @@ def test_a_late_torque_is_a_delay_of_as_much(delay, sign):
     assert found.delay.high - found.delay.low < 0.01
     assert found.time_constant.value == pytest.approx(0.0, abs=3e-4)
     assert found.log_odds < -3
+
+
+@pytest.mark.parametrize("onset", [0.03, 0.06])
+@pytest.mark.parametrize("slow", [3.0, 5.0])
+def test_friction_that_builds_up_over_a_few_hundredths_of_a_degree_is_no_filter(slow, onset):
+    """A light arm, so that friction tells more than inertia, and moves as slow as that."""
+    found = timing(
+        logged(
+            delay=0.012,
+            every=10,
+            noise=0.02,
+            inertia=0.0175,
+            speeds=(slow, 2.5 * slow, 25.0, 20 * slow),
+            onset=onset,
+        )
+    )
+    assert found.best == "torque_delay"
+    assert found.shift.low < 0.012 < found.shift.high
+    assert found.shift.value == pytest.approx(0.012, abs=0.002)
 
 
 @pytest.mark.parametrize("time_constant", [0.02, 0.04])

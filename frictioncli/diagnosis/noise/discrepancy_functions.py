@@ -98,7 +98,7 @@ def _of_speed_ripple(table: EffectTable) -> list[tuple[Array, Array]]:
     r"""Return what the inertia of a speed that ripples adds to friction and load, if speeds differ.
 
     A ripple over the angle that is a share of the speed has the acceleration
-    :math:`v\,dv/dq`, which grows with its square. It may have any order, so that all weigh the same.
+    :math:`v\,dv/dq`, which grows with its square. It may have any order: all weigh the same.
     Behind a late torque what stands in the load forward and in reverse differs, by the more the
     faster the ripple passes: half the difference looks like friction.
     """

@@ -36,8 +36,11 @@ _SLOWEST = 0.5
 _REGULAR = 0.02
 """Tolerated difference between sampling periods, as a share."""
 
-_DISTANCES = (0.3, 3.0)
+_DISTANCES = (0.05, 0.3, 3.0)
 """Angles over which friction may still build up after that. [deg]"""
+
+_SLOW_SPEED = 5.0
+"""Speed over which friction at low speed may decay. [deg/s]"""
 
 _SHORTEST_RIPPLE = 24.0
 """Shortest period of what friction may vary with along the angle. [deg]"""
@@ -233,6 +236,7 @@ def _assembled(grid: _Grid, sign: int, problem: Problem, temperature: str) -> St
         inertial += [smooth(values, 2) for values in (np.cos(angle), np.sin(angle))]
         gravity = np.zeros_like(gravity)
     built_up = [moving * np.exp(-travelled / distance) for distance in _DISTANCES]
+    slow = moving * np.exp(-np.abs(velocity) / _SLOW_SPEED)
     ends = np.cumsum(grid.known[:, ::-1], axis=1)[:, ::-1]
     level = np.round(np.log(grid.first["speed"].to_numpy(float)) / _SAME_SPEED)
     conditions = pd.MultiIndex.from_arrays([level, direction[:, 0]])
@@ -247,7 +251,7 @@ def _assembled(grid: _Grid, sign: int, problem: Problem, temperature: str) -> St
         inertial=tuple(inertial),
         frictional=tuple(
             smooth(one, 1)
-            for one in (*built_up, moving * np.abs(velocity), *_along_angle(grid, moving))
+            for one in (*built_up, slow, moving * np.abs(velocity), *_along_angle(grid, moving))
         ),
         conditions=pd.factorize(conditions)[0],
     )
