@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from frictioncli.diagnosis.search.largest_structure import inadequacy
+from frictioncli.diagnosis.search.largest_structure import inadequacy, size_along
 from tests.diagnosis.dense_noise import problem
 
 FLOOR = 0.02
@@ -33,3 +33,14 @@ def test_a_day_with_a_little_more_or_less_friction_lacks_nothing(of_the_day):
 def test_what_varies_with_the_speed_alone_is_lacking_though_it_is_as_small():
     found = lacking(lambda data: np.cos(4 * np.log(data.table.speed)), 0.02)
     assert found.axes == ("speed",)
+
+
+def test_the_size_along_an_axis_is_that_of_what_varies_with_it():
+    data = problem(4)
+    levels, place = np.unique(data.table.speed, return_inverse=True)
+    torque = np.array([0.3, -0.2, 0.1, 0.4, -0.1, 0.2])[: len(levels)][place]
+    noise = np.random.default_rng(1).normal(0, FLOOR, len(torque))
+    assert size_along(data, "speed", 2.0 + torque + noise) == pytest.approx(
+        np.std(torque), rel=0.05
+    )
+    assert size_along(data, "position", 2.0 + torque + noise) < 0.2 * np.std(torque)

@@ -18,7 +18,7 @@ from frictioncli.diagnosis.fit.extension import Extension, misfits
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.lack_of_fit import Structure, first_above, structures
-from frictioncli.diagnosis.search.largest_structure import inadequacy
+from frictioncli.diagnosis.search.largest_structure import inadequacy, size_along
 from frictioncli.diagnosis.search.measurement import beside_base
 from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
 from frictioncli.diagnosis.search.recurring_structure import recurring_structure
@@ -84,7 +84,7 @@ def structure_on_new_run(
         return None
     if found is None or not _SLOW.isdisjoint(found.axes):
         lacking = inadequacy(problem, *misfit, floor=floor, margin=margin)
-        return None if lacking is None else (lacking, None)
+        return None if lacking is None else (_located(lacking, step.problem, predicted), None)
     term = empirical_term(
         own,
         new,
@@ -96,6 +96,19 @@ def structure_on_new_run(
         base_is_of_others=True,
     )
     return replace(found, only_on=problem.runs[-1]), term
+
+
+def _located(lacking: Structure, seen: Problem, predicted: Extension) -> Structure:
+    """Return what the model lacks on a new run; not of that run alone if the others have it, too.
+
+    There it may have been discrepancy. Along time a run has its own history.
+    """
+    (axis,) = lacking.axes
+    if axis == "time":
+        return lacking
+    misfit = misfits(seen, predicted)[0 if lacking.channel == "friction" else 1]
+    before = size_along(seen, axis, misfit)
+    return replace(lacking, only_on="") if before > _LESS_BEFORE * lacking.size else lacking
 
 
 def _was_there(found: Structure, step: Step) -> bool:

@@ -139,6 +139,22 @@ def inadequacy(
     )
 
 
+def size_along(problem: Problem, axis: str, misfit: Array) -> float:
+    """Return how much a misfit varies along an axis, RMS of its bin means without noise [N·m].
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    axis : str
+        The axis.
+    misfit : ndarray, shape (rows,)
+        Misfit in one channel. [N·m]
+    """
+    bins = _bins(getattr(problem.table, _AXES[axis]))
+    return _size(misfit - float(np.mean(misfit)), bins, problem.layout.row_pair)[0]
+
+
 def _between_days(problem: Problem, misfit: Array) -> Array:
     """Return the part of a misfit of friction by which days differ; 0 where that is too much."""
     simulated = problem.friction - misfit
