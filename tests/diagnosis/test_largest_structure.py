@@ -35,6 +35,23 @@ def test_what_varies_with_the_speed_alone_is_lacking_though_it_is_as_small():
     assert found.axes == ("speed",)
 
 
+def test_what_is_below_the_margin_along_every_axis_is_not_lacking():
+    """Waves along angle, speed and temperature, each 0.75 of the margin, 1.3 together."""
+    data = problem(4)
+    table = data.table
+    waves = [
+        np.cos(4 * np.log(table.speed)),
+        np.sin(np.radians(7 * table.position)),
+        np.cos(table.temperature / 2),
+    ]
+    waves = [one - np.mean(one) for one in waves]
+    parts = [one / np.sqrt(np.mean(np.square(one))) for one in waves]
+    none = np.zeros_like(parts[0])
+    for size, is_lacking in ((0.075, False), (0.15, True)):
+        found = inadequacy(data, size * sum(parts), none, floor=FLOOR, margin=0.1)
+        assert (found is not None) is is_lacking
+
+
 def test_the_size_along_an_axis_is_that_of_what_varies_with_it():
     data = problem(4)
     levels, place = np.unique(data.table.speed, return_inverse=True)

@@ -100,6 +100,7 @@ def inadequacy(
 ) -> Structure | None:
     """Return what a model lacks on a new run as structure; None where its misfit may be noise.
 
+    Nothing along an axis that is below the margin is lacking, though several together may be above.
     Along time where it varies with nothing that is measured: it is of that run. By how much the
     friction of days differs anyway, in constant parts and in proportion, is not lacking.
 
@@ -126,6 +127,8 @@ def inadequacy(
         along = "time"
     elif size**2 < LEAST_PART * rest:
         along, size, interval = "time", float(np.sqrt(rest)), (0.0, np.inf)
+    if size <= margin:
+        return None
     ratio = square / max(floor, 1e-9) ** 2
     return Structure(
         axes=(along,),
