@@ -45,8 +45,9 @@ def weight(one):
     """Return the expected size of a function relative to a main effect of friction."""
     if one.axes == FINE:
         return 0.2
-    minor = one.channel == "load" or len(one.axes) == 2 or one.axes == SPEED_RIPPLE
-    return 0.6 if minor else 1.0
+    if (one.axes, one.channel) == (SPEED_RIPPLE, "friction"):
+        return 0.3
+    return 0.6 if one.channel == "load" or len(one.axes) == 2 else 1.0
 
 
 def test_what_the_base_leaves_of_each_function_has_its_size(joint):

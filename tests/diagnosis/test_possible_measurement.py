@@ -100,8 +100,8 @@ def test_friction_that_turns_over_with_speed_is_no_delay_beside_a_play(turning, 
 
 @pytest.mark.parametrize("noise", [0.03, 0.1])
 def test_friction_along_the_angle_is_no_delay_once_the_play_is_refused(noise):
-    """A play of 9 deg would do the same, and beside it there is no evidence of a delay."""
-    problem = problem_of(coarse(3, along=1.0, speeds=(40.0, 50.0), noise=noise))
+    """A play of 14 deg would do the same, and beside it there is no evidence of a delay."""
+    problem = problem_of(coarse(3, along=1.5, speeds=(40.0, 50.0), noise=noise))
     beside, refused = stands(problem)
     assert {"backlash", "torque_delay"}.isdisjoint(beside)
     assert "physically impossible" in refused["backlash"]

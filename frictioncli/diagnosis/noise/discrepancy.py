@@ -51,11 +51,14 @@ _FORM_ERRORS = 2.0
 they look like its parameters: exponents are fitted to one joint, and differ from joint to joint."""
 
 _MINOR_WEIGHT = 0.6
-"""The same of functions of two quantities, of a ripple of the speed, and of those in the load
-channel: main effects are larger than interactions, and gravity is better known than friction."""
+"""The same of functions of two quantities and of those in the load channel: main effects are larger
+than interactions, and gravity is better known than friction."""
 
 _FINE_WEIGHT = 0.2
 """The same of a fine function of the angle: a smooth one would have 0.08 in its orders."""
+
+_LATE_WEIGHT = _MINOR_WEIGHT / 2
+"""The same of a ripple of the speed in friction, where a part of what stands in the load shows."""
 
 _UNSEEN = float(np.exp(SPREAD**2))
 """Root mean square of an amplitude that no data show, relative to its median."""
@@ -268,7 +271,9 @@ def weight_of(axes: tuple[str, ...], channel: Channel) -> float:
     """
     if axes == FINE:
         return _FINE_WEIGHT
-    return _MINOR_WEIGHT if channel == "load" or len(axes) == 2 or axes == SPEED_RIPPLE else 1.0
+    if axes == SPEED_RIPPLE and channel == "friction":
+        return _LATE_WEIGHT
+    return _MINOR_WEIGHT if channel == "load" or len(axes) == 2 else 1.0
 
 
 def _of_errors(axes: tuple[str, ...], columns: Array) -> Array:

@@ -9,8 +9,7 @@ with columns :math:`c_k` of that axis: harmonics of the angle, levels of speed, 
 temperature, load and time, and products. Twice the logarithm of the restricted likelihood that the
 best amplitude :math:`\omega` gains is half the time 0, else a chi-squared variable of one degree
 of freedom, where nothing is there [1]_. Along the time the drift itself is such a function: it is
-structure where there is more of it than any joint has. These functions name no cause; they show
-that the model is wrong where no effect of the catalogue explains how.
+structure where there is more than any joint has. They name no cause, but show what is unexplained.
 
 References
 ----------
@@ -54,6 +53,9 @@ _PINNED = 1e-3
 
 _SIGNIFICANT = 5e-3
 """Greatest p-value of structure that no effect explains."""
+
+_ROUNDED = 1e-9
+"""Share of its squares below which what the base leaves of a function is rounding."""
 
 _TOLD_BY_ANGLE = 10.0
 """By so much structure along the load must be likelier than another: with one payload and pose the
@@ -207,7 +209,7 @@ def _structures(step: Step) -> tuple[Structure, ...]:
         basis = Basis(columns, zeros) if channel == "friction" else Basis(zeros, columns)
         left = products_left_by(span, basis)
         squares = float(np.trace(left))
-        if squares <= 0:
+        if squares <= _ROUNDED * float(np.sum(np.square(columns))):
             return None
         scale = float(np.sqrt(len(columns) / squares))
         fit = _beside_function(step, expected, basis, scale, (null, quiet))
