@@ -91,7 +91,7 @@ def spot(rows):
 
 
 @pytest.mark.parametrize(
-    ("level", "slope", "axis"), [(0.1, 0.0, None), (1.5, 0.0, "time"), (0.0, 0.2, "temperature")]
+    ("level", "slope", "axis"), [(0.1, 0.0, None), (2.5, 0.0, "time"), (0.0, 0.2, "temperature")]
 )
 def test_a_model_that_misses_a_new_run_by_far_more_than_noise_lacks_something(level, slope, axis):
     """A day with other grease: its own base would take what the base of the day before misses."""

@@ -115,14 +115,18 @@ def inadequacy(
     margin : float
         Smallest size worth a name. [N·m]
     """
-    friction = friction - _between_days(problem, friction)
-    square = float(np.mean(problem.squared(friction, load)))
+    beyond = friction - _between_days(problem, friction)
+    square = float(np.mean(problem.squared(beyond, load)))
     rest = square - floor**2
     if square <= (INADEQUATE * floor) ** 2 or rest <= margin**2:
         return None
-    found = left_structure(problem, friction, load)
+    found = left_structure(problem, beyond, load)
     size, interval, pairs = found.size, found.interval, len(problem.layout.time)
     along = found.axis
+    if found.channel == "friction" and along in _AXES:
+        # along that axis, all of it is lacking
+        size = size_along(problem, along, friction)
+        interval = (interval[0] * size / found.size, interval[1] * size / found.size)
     if along == WHOLE_RUN:
         along = "time"
     elif size**2 < LEAST_PART * rest:
