@@ -9,8 +9,8 @@ from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.margin import margin_of
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.effects import EFFECTS
-from tests.equation_16 import TRUTH, torques
+from frictioncli.effects import BY_NAME, EFFECTS
+from tests.equation_16 import TRUTH, friction, torques
 
 RATE = 6.0  # [N·m/h]
 
@@ -74,3 +74,31 @@ def test_no_second_cause_is_named_for_what_the_first_one_hid(seed):
     assert cause.standing in ("named", "undetermined")
     rate, hours = cause.fit.coefficients[0], cause.fit.shape["time_constant"]
     assert rate * hours * -np.expm1(-1.2 / hours) == pytest.approx(RATE * 1.2, rel=0.25)
+
+
+@pytest.mark.parametrize("delay", [0.02, 0.06])
+def test_a_late_torque_bends_no_base_model(delay):
+    """Torques of both directions where the joint was that long before, by equation (16)."""
+    rows = torques(3, point=0.05, pair=0.1, drift=0.1)
+    angle, way = np.radians(rows["position"]), np.radians(rows["speed"]) * delay
+
+    def logged(sign):
+        load = 95.0 * np.cos(angle - sign * way)
+        own = {"speed": rows["speed"], "temperature": rows["motor_temperature"]}
+        exact = friction(TRUTH, load=load, **own)
+        noise = rows["friction_torque"] - friction(TRUTH, load=rows["load_torque"], **own)
+        return load + sign * (exact + noise)
+
+    forward, reverse = logged(1), logged(-1)
+    late = rows.assign(
+        friction_torque=(forward - reverse) / 2, load_torque=(forward + reverse) / 2, load=np.nan
+    )
+    problem = build_problems(late, "motor")[0]
+    assert problem.parameters.alpha == pytest.approx(TRUTH["alpha"], rel=0.04)
+    # about the right one, delay and filter are what they are in the load alone, too
+    smeared, shifted = (
+        problem.basis(BY_NAME[name], {}).load for name in ("torque_filter", "torque_delay")
+    )
+    known = np.column_stack([problem.load_base, smeared, shifted])
+    found = np.linalg.lstsq(known, problem.load, rcond=None)[0][-2:]
+    assert found == pytest.approx([delay**2 / 2, delay], rel=0.1)

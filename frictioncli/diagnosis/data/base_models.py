@@ -9,6 +9,7 @@ from frictioncli.diagnosis.data.pair_layout import speed_level
 from frictioncli.model.document import PARAMETERS
 from frictioncli.model.friction import FrictionParameters
 from frictioncli.model.identifiability import determined_fit, load_varies
+from frictioncli.model.late_torque import torque_delay, without_delay
 from frictioncli.model.observations import observations
 from frictioncli.model.zero_load import PAIR_KEY
 
@@ -41,7 +42,8 @@ def candidate_bases(rows: pd.DataFrame, temperature: str) -> list[Base]:
     A few pairs at rare speeds that follow another law would bend the parameters so far that a model
     linear about them explains nothing. Gamma and delta stay where delta is vague, and beta is
     refitted wherever gamma is, even where the fit could not distinguish them: the effect that is
-    searched for may be the reason.
+    searched for may be the reason. What a late torque adds to friction looks like less of it by
+    load, about which the effects of a delay and a filter would then be linear: it is taken off.
 
     Parameters
     ----------
@@ -51,6 +53,7 @@ def candidate_bases(rows: pd.DataFrame, temperature: str) -> list[Base]:
     temperature : {"motor", "housing", "mean"}
         Temperature that the friction function is given.
     """
+    rows = _without_delay(rows)
     pairs = rows.drop_duplicates(PAIR_KEY)
     level = speed_level(pairs["speed"].to_numpy(float))
     _, place, count = np.unique(level, return_inverse=True, return_counts=True)
@@ -61,6 +64,12 @@ def candidate_bases(rows: pd.DataFrame, temperature: str) -> list[Base]:
     if not common.all() and common.sum() >= 3 and mostly:
         samples.append(rows.merge(pairs.loc[common[place], PAIR_KEY], on=PAIR_KEY))
     return [_base(sample, temperature) for sample in samples]
+
+
+def _without_delay(rows: pd.DataFrame) -> pd.DataFrame:
+    measured_apart = bool(rows["load"].notna().any())
+    delay = None if measured_apart else torque_delay(rows)
+    return without_delay(rows, None if delay is None else delay.value)
 
 
 def _base(rows: pd.DataFrame, temperature: str) -> Base:
