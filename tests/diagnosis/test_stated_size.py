@@ -135,7 +135,7 @@ def test_what_may_be_below_the_margin_does_not_blur_the_others():
     step = Step.of(precomputed, fits)
     causes = [replace(cause(), fit=fit, effects=(fit.effect.name,)) for fit in fits]
     extension = extend(joint, step.predicting_fit(), fits)
-    together = sizes_in_model(causes, extension, step, [], joint, 0.2)
+    together = sizes_in_model(causes, extension, step, [], joint)
     kept, gone = sizes_beside_each_other(causes, step, [], joint, 0.2)
     assert [kept.fit.effect.name, gone.fit.effect.name] == ["there", "imitation"]
     assert gone == together[1]

@@ -75,12 +75,8 @@ def sizes_in_model(
     step: Step,
     measurement: Sequence[Cause],
     base: Problem,
-    margin: float,
 ) -> tuple[Cause, ...]:
     """Return causes with their sizes in an extended model, a lag of the gear behind a slow sensor.
-
-    One that the model surely has, but may have less of than the margin, keeps the size with which
-    it was found if that is surely above: it is this one that gives it its name.
 
     Parameters
     ----------
@@ -94,36 +90,13 @@ def sizes_in_model(
         Effects of the measurement beside the base.
     base : Problem
         The rows with the base model about the measured temperature, which takes torque from causes.
-    margin : float
-        Smallest size worth a name. [N·m]
     """
     if all(one.fit.effect.measurement for one in causes):
         return tuple(causes)
     span = span_at_measured(base, measurement)
     weighted_fit = sizing_fit(step, measurement, extension.effects)
     stated = stated_sizes(causes, extension, step.problem, weighted_fit, span)
-    stated = behind_sensor(stated, measurement, step.problem, base, span)
-
-    def deciding(found: Cause, stated: Cause) -> Cause:
-        known = over_margin(found, base, margin) > 1.0
-        return found if known and 0.0 < over_margin(stated, base, margin) <= 1.0 else stated
-
-    return tuple(deciding(*both) for both in zip(causes, stated, strict=True))
-
-
-def over_margin(cause: Cause, base: Problem, margin: float) -> float:
-    """Return the lower end of a size, relative to the margin in its channel.
-
-    Parameters
-    ----------
-    cause : Cause
-        The cause.
-    base : Problem
-        The joint's rows.
-    margin : float
-        Smallest size worth a name. [N·m]
-    """
-    return cause.visible_interval[0] / channel_margin(base, cause.fit.effect.channel, margin)
+    return behind_sensor(stated, measurement, step.problem, base, span)
 
 
 def sizes_beside_each_other(
@@ -135,7 +108,8 @@ def sizes_beside_each_other(
 ) -> tuple[Cause, ...]:
     """Return causes with the sizes that decide on their names, beside others that have one.
 
-    The smallest one that may be below the margin goes first, with the size that it
+    What the extended model has of a cause decides, or what the search found of it if the model
+    surely has some. The smallest one that may be below the margin goes first, with the size that it
     has in the model; the others are estimated without it.
 
     Parameters
@@ -157,19 +131,23 @@ def sizes_beside_each_other(
     among: list[Cause] = list(causes)
     gone: list[Cause] = []
 
-    def excess(cause: Cause) -> float:
-        return over_margin(cause, base, margin)
+    def over_margin(cause: Cause) -> float:
+        return cause.visible_interval[0] / channel_margin(base, cause.fit.effect.channel, margin)
+
+    def deciding(found: Cause, stated: Cause) -> Cause:
+        return found if over_margin(found) > 1.0 and 0.0 < over_margin(stated) <= 1.0 else stated
 
     while among:
         fits = [*(one.fit for one in among), *clear]
         weighted_fit = beside_the_rest(step.problem, alike, measurement, fits)
         extension = extend(step.problem, weighted_fit, fits)
-        sized = sizes_in_model(among, extension, step, measurement, base, margin)
-        least = min(range(len(sized)), key=lambda number: excess(sized[number]))
-        if excess(sized[least]) > 1.0:
+        stated = sizes_in_model(among, extension, step, measurement, base)
+        sized = [deciding(one, two) for one, two in zip(among, stated, strict=True)]
+        least = min(range(len(sized)), key=lambda number: over_margin(sized[number]))
+        if over_margin(sized[least]) > 1.0:
             return (*sized, *gone)
         del among[least]
-        gone.append(sized[least])
+        gone.append(stated[least])
     return tuple(gone)
 
 
