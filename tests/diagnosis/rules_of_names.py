@@ -42,7 +42,7 @@ def keeps_the_rules(diagnosis):
         whole = cause.size / cause.visible if fit.effect.measurement else 1.0
         # or the search found more, and the model surely has some
         found = [one for one in diagnosis.search.causes if one.fit.effect is fit.effect]
-        assert 0.0 < low
+        assert low > 0.0
         assert diagnosis.margin < max([whole * low, *(one.visible_interval[0] for one in found)])
         assert within_its_bounds(problem, fit), fit
         assert np.diag(fit.covariance).any()

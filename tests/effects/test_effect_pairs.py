@@ -1,5 +1,7 @@
 """Steps that effects share, against a general integrator and by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -145,3 +147,20 @@ def test_each_run_has_its_own_turns():
     low, high = turned((0.0, 100.0), (20.0, 80.0), (30.0, 70.0), run=[0, 1, 1])
     assert low[1, 0] == high[1, 2] == 1.0
     assert low[2, 0] == high[2, 2] == pytest.approx(np.exp(-1))
+
+
+def test_what_is_made_of_a_table_once_is_that_of_the_table_alone():
+    """A table with other columns starts anew, though it comes from the first one."""
+    calls = []
+
+    def fastest(table):
+        calls.append(table)
+        return float(table.speed.max())
+
+    table = small(speed=[10.0, 30.0, 20.0])
+    assert [table.once(fastest), table.once(fastest)] == [30.0, 30.0]
+    assert len(calls) == 1
+    slower = replace(table, speed=table.speed / 2)
+    assert slower.once(fastest) == 15.0
+    assert table.once(fastest) == 30.0
+    assert len(calls) == 2
