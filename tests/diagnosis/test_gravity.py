@@ -79,7 +79,8 @@ def test_one_payload_is_a_single_sine(payload):
     problem, _ = build_problems(rows.assign(payload=mass), "motor", "day2")
     assert problem.load_base.shape[1] == 3
     np.testing.assert_array_equal(problem.gravity, bare.gravity)
-    np.testing.assert_array_equal(problem.friction_base, bare.friction_base)
+    # the delay, taken off before the base is fitted, is summed in another order
+    np.testing.assert_allclose(problem.friction_base, bare.friction_base, rtol=1e-9)
     assert set(msgspec.to_builtins(gravity_document(problem.gravity))) == {
         "cosine",
         "sine",
