@@ -50,11 +50,6 @@ must be 10. The held-out day adds less than 1 to that on the paper's programme. 
 along the angle on the enriched programme stands at the edge of the bump, where a raised cosine ends
 and a normal curve does not.
 
-Without any law, joint 211 on the enriched programme has structure along angle and speed that is not
-there, and 1.45 N·m on the day kept out (0.58 with a third moment of the filter that was free): its
-`torque_filter` comes out impossible and takes the `torque_delay` with it. On the 920 joints of the
-blind study that happens on one that had a filter before, and no longer on 20 others.
-
 ## Laws
 {head}
 {laws}
