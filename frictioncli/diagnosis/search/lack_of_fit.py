@@ -9,7 +9,7 @@ with columns :math:`c_k` of that axis: harmonics of the angle, levels of speed, 
 temperature, load and time, and products. Twice the logarithm of the restricted likelihood that the
 best amplitude :math:`\omega` gains is half the time 0, else a chi-squared variable of one degree
 of freedom, where nothing is there [1]_. Along the time the drift itself is such a function: it is
-structure where there is more than any joint has. They name no cause, but show what is unexplained.
+structure where it is, or surely was, more than any joint has. They name no cause.
 
 References
 ----------
@@ -40,7 +40,7 @@ from frictioncli.diagnosis.search.axis_columns import (
 )
 from frictioncli.diagnosis.search.carried_load import most_likely_constant
 from frictioncli.diagnosis.search.margin import channel_margin
-from frictioncli.diagnosis.search.realised_size import realised, realised_drift
+from frictioncli.diagnosis.search.realised_size import chance_of_less, realised, realised_drift
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.distributions import chi2_tail
 from frictioncli.effects.base import Basis, Channel
@@ -62,7 +62,6 @@ _TOLD_BY_ANGLE = 10.0
 load is a function of the angle, and what goes with it goes with the angle, too."""
 
 _LOAD: tuple[tuple[str, ...], Channel] = (("load",), "friction")
-
 _LOAD_AND_SPEED: tuple[tuple[str, ...], Channel] = (("load", "speed"), "friction")
 _ANGLE_AND_SPEED: tuple[tuple[str, ...], Channel] = (("position", "speed"), "friction")
 
@@ -127,10 +126,8 @@ def unnamed_structure(
     ----------
     step : Step
         Base and accepted effects.
-    margin : float
-        Smallest size worth a name. [N·m]
-    alpha : float
-        Significance level.
+    margin, alpha : float
+        Smallest size worth a name [N·m] and significance level.
     is_known : callable, optional
         Whether structure belongs to something that is known, and does not count.
     """
@@ -242,18 +239,20 @@ def _structures(step: Step) -> tuple[Structure, ...]:
         if finer is not None and finer[2] > of_load[2] - _TOLD_BY_ANGLE:
             # more functions may cancel the discrepancy's: the size is that of the fewer
             by_place[_ANGLE_AND_SPEED] = (*finer[:3], *of_load[3:])
-    found = [one for one in by_place.values() if one is not None]
-    found += [_drift(step, expected, null, number) for number in range(2)]
+    most = np.sqrt(expected.most_drift)
+    found = [(one, np.inf) for one in by_place.values() if one]
+    found += [(_drift(step, expected, null, number), most[number]) for number in range(2)]
     every = (
         Structure(
             axes=names,
             channel=channel,
-            p_value=min(1.0, len(found) * chi2_tail(statistic, 1) / 2),
+            p_value=min(1.0, len(found) * min(chi2_tail(statistic, 1) / 2, within)),
             statistic=max(statistic, 0.0),
             size=size,
             interval=interval,
         )
-        for names, channel, statistic, size, interval in found
+        for (names, channel, statistic, size, interval), least in found
+        for within in [chance_of_less(size, interval, least)]
     )
 
     def behind(one: Structure) -> float:
