@@ -14,6 +14,7 @@ from frictioncli.diagnosis.empirical.random_functions import (
     term_of,
 )
 from frictioncli.diagnosis.empirical.term import ranges_seen
+from frictioncli.diagnosis.empirical.weighted_misfit import WeightedMisfit
 from frictioncli.diagnosis.fit.extension import extend, misfits
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
@@ -101,3 +102,13 @@ def test_a_bump_that_a_later_run_has_alone_is_found_with_that_run(since):
     widest = {axis.name: axis.values[-1] for axis in found.form.shape}
     assert not found.is_widest
     assert replace(found, shape={**found.shape, "width": widest["width"]}).is_widest
+
+
+def test_distinct_inputs_explain_what_all_rows_do():
+    """The same statistic from columns over all rows, which know nothing of distinct inputs."""
+    first, fitted = search(problem(3, friction=warm_peak))
+    misfit = WeightedMisfit.of(fitted, first.noise, first.functions, first.misfit)
+    for form in forms_of(ranges_seen(fitted.problem.table)):
+        shapes = form.shapes()[::17]
+        slowly = [misfit.together([(form, shape)]) for shape in shapes]
+        assert misfit.statistics(form, shapes) == pytest.approx(slowly, rel=1e-6, abs=1e-9)

@@ -9,13 +9,14 @@ All shapes of a grid are tried, those of the best forms at more places, and then
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg import solve_triangular
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.empirical.distinct_inputs import InputProducts, Inputs, input_names
 from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
 from frictioncli.diagnosis.empirical.form_columns import Shape
 from frictioncli.diagnosis.empirical.forms import Form, ShapeAxis
@@ -62,6 +63,12 @@ class WeightedMisfit:
     weights: tuple[Weights, Weights]
     known: Array
     misfit: Array
+    _inputs: dict[tuple[str, ...], Inputs | None] = field(
+        default_factory=dict, init=False, repr=False
+    )
+    _input_products: dict[tuple[tuple[str, ...], int], InputProducts] = field(
+        default_factory=dict, init=False, repr=False
+    )
 
     @classmethod
     def of(
@@ -124,21 +131,58 @@ class WeightedMisfit:
             Its shapes.
         """
         width = len(form.coefficients)
-        parts = [form.columns(self.problem.table, one) for one in shapes]
-        weighted, rows = self._weighted(parts)
-        right, hidden = weighted.T @ self.misfit[rows], self.known[:, rows] @ weighted
+        right, hidden, whole = self._products(form, shapes)
         if width == 1:
-            size = np.einsum("rs,rs->s", weighted, weighted)
-            own = size - np.einsum("rs,rs->s", hidden, hidden)
+            size = whole[:, 0, 0]
+            own = size - np.einsum("ks,ks->s", hidden, hidden)
             shown = own > _LEAST_LEFT * size
             return np.where(shown, right**2 / np.where(shown, own + _FREE * size, 1.0), 0.0)
         found = []
-        for first in range(0, len(right), width):
-            columns, taken = (one[:, first : first + width] for one in (weighted, hidden))
-            whole = columns.T @ columns
-            left = whole - taken.T @ taken
-            found.append(_statistic(right[first : first + width], left, np.diag(whole)))
+        for number, own in enumerate(whole):
+            columns = slice(number * width, (number + 1) * width)
+            taken = hidden[:, columns]
+            found.append(_statistic(right[columns], own - taken.T @ taken, np.diag(own)))
         return np.array(found)
+
+    def _products(self, form: Form, shapes: Sequence[Shape]) -> tuple[Array, Array, Array]:
+        """Return products of a form's columns with the misfit, with what is known, and their own.
+
+        Those of their own are of each shape, shape (shapes, coefficients, coefficients).
+        """
+        inputs = self._inputs_of(form)
+        if inputs is None:
+            parts = [form.columns(self.problem.table, one) for one in shapes]
+            weighted, rows = self._weighted(parts)
+            own = _own_products(weighted, weighted, len(shapes))
+            return weighted.T @ self.misfit[rows], self.known[:, rows] @ weighted, own
+        parts = [form.columns(inputs.table, one) for one in shapes]
+        count = len(shapes) * len(form.coefficients)
+        right, hidden = np.zeros(count), np.zeros((len(self.known), count))
+        whole = np.zeros((len(shapes), len(form.coefficients), len(form.coefficients)))
+        for channel in (0, 1):
+            values = np.hstack([one[channel] for one in parts])
+            if values.any():
+                products = self._products_of(form, inputs, channel)
+                right += products.misfit @ values
+                hidden += products.known @ values
+                whole += _own_products(values, products.own @ values, len(shapes))
+        return right, hidden, whole
+
+    def _inputs_of(self, form: Form) -> Inputs | None:
+        names = input_names(form)
+        if names not in self._inputs:
+            self._inputs[names] = Inputs.of(self.problem.table, names)
+        return self._inputs[names]
+
+    def _products_of(self, form: Form, inputs: Inputs, channel: int) -> InputProducts:
+        key = input_names(form), channel
+        if key not in self._input_products:
+            weighted = self.weights[channel].weighted(inputs.indicators)
+            rows = slice(0, len(weighted)) if channel == 0 else slice(-len(weighted), None)
+            self._input_products[key] = InputProducts.of(
+                weighted, self.misfit[rows], self.known[:, rows]
+            )
+        return self._input_products[key]
 
     def together(self, forms: Sequence[tuple[Form, Shape]]) -> float:
         """Return what several forms explain together.
@@ -254,6 +298,12 @@ class WeightedMisfit:
 
 def _measure(axis: ShapeAxis, value: float) -> float:
     return float(np.log(value)) if axis.logarithmic else value
+
+
+def _own_products(left: Array, right: Array, shapes: int) -> Array:
+    """Return inner products of the columns of each shape, shape (shapes, columns, columns)."""
+    first, second = (one.reshape(len(one), shapes, -1) for one in (left, right))
+    return np.einsum("rsa,rsb->sab", first, second)
 
 
 def _statistic(right: Array, left: Array, size: Array) -> float:
