@@ -15,6 +15,7 @@ import numpy as np
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.empirical.form_columns import BUMP
 from frictioncli.diagnosis.empirical.forms import Form
+from frictioncli.diagnosis.fit.weighted_fit import Weights
 from frictioncli.effects.base import EffectTable
 from frictioncli.effects.pair_series import rows_of
 
@@ -69,10 +70,22 @@ class Inputs:
             return None
         return cls(rows_of(table, first), number)
 
-    @property
-    def indicators(self) -> Array:
-        """Which input each row has, shape (rows, inputs)."""
-        return np.eye(len(self.table.speed))[self.number]
+    def weighted(self, weights: Weights) -> Array:
+        """Return weighted indicators of which input a row has, shape (weighted rows, inputs).
+
+        Where all rows of a pair have the same one, these are those of the pair means alone, behind
+        deviations that are zero.
+
+        Parameters
+        ----------
+        weights : Weights
+            Weights of the channel.
+        """
+        indicators, row_pair = np.eye(len(self.table.speed)), weights.layout.row_pair
+        of_pair = self.number[np.flatnonzero(np.diff(row_pair, prepend=-1))]
+        if np.array_equal(of_pair[row_pair], self.number):
+            return indicators[of_pair] / weights.deviation[:, np.newaxis]
+        return weights.weighted(indicators[self.number])
 
 
 @dataclass(frozen=True, slots=True)

@@ -177,8 +177,9 @@ class WeightedMisfit:
     def _products_of(self, form: Form, inputs: Inputs, channel: int) -> InputProducts:
         key = input_names(form), channel
         if key not in self._input_products:
-            weighted = self.weights[channel].weighted(inputs.indicators)
-            rows = slice(0, len(weighted)) if channel == 0 else slice(-len(weighted), None)
+            weighted = inputs.weighted(self.weights[channel])
+            end = len(self.misfit) // 2 * (channel + 1)
+            rows = slice(end - len(weighted), end)
             self._input_products[key] = InputProducts.of(
                 weighted, self.misfit[rows], self.known[:, rows]
             )
