@@ -221,7 +221,7 @@ def diagnose_joint(
                 lag, fits, lambda rows, among: extend(rows, weighted_fit, among)
             )
             problem, new = lag.problem, lag.new
-        causes = sizes_in_model(causes, extension, step, named.measurement, base)
+        causes = sizes_in_model(causes, extension, step, named.measurement, base, found.refused)
     appeared: tuple[Cause, ...] = ()
     floor = found.floor
     modelled = extension or extend(problem, weighted_fit, fits)

@@ -13,6 +13,7 @@ from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
 from frictioncli.diagnosis.noise.discrepancy import discrepancy_of
+from frictioncli.diagnosis.search.measurement import beside_base, measurement_causes
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.stated_size import (
     sizes_beside_each_other,
@@ -143,6 +144,61 @@ def test_what_may_be_below_the_margin_does_not_blur_the_others():
     low, high = kept.visible_interval
     assert 0.2 < low < 0.4 / np.sqrt(2) < high
     assert high - low < 0.5 * np.subtract(*together[0].visible_interval[::-1])
+
+
+def logged_late(rows, delay, time_constant):
+    """Return what a delay and a filter add to friction and load, by their transfer function.
+
+    Gravity is L cos q, and what it adds to friction a cosine of twice the angle.
+    """
+    turn, rate = np.radians(rows["position"]), np.radians(rows["speed"])
+    gravity, bend = 95.0, TRUTH["alpha"] * 95.0**2 / 2
+    first, second = (
+        np.exp(-1j * n * rate * delay) / (1 + 1j * n * rate * time_constant) for n in (1, 2)
+    )
+    return (
+        bend * np.cos(2 * turn) * (np.real(second) - 1) - gravity * np.sin(turn) * np.imag(first),
+        gravity * np.cos(turn) * (np.real(first) - 1) - bend * np.sin(2 * turn) * np.imag(second),
+    )
+
+
+def inertial(position, speed, inertia, settling):
+    """Return friction and load of a speed that settles exponentially after each reversal."""
+    low, high = (
+        inertia * np.radians(speed) / settling * np.exp(-distance / speed / settling)
+        for distance in (position - 5.0, 175.0 - position)
+    )
+    return (low + high) / 2, (low - high) / 2
+
+
+@pytest.mark.parametrize(
+    ("settling", "delay", "time_constant"), [(0.4, 0.018, 0.04), (0.5, 0.0, 0.055)]
+)
+def test_inertia_may_hide_the_filter_beside_which_it_is_as_large(settling, delay, time_constant):
+    """Beside the base alone the filter looks impossible; the interval allows for it yet."""
+
+    def added(rows, channel):
+        ends = inertial(rows["position"], rows["speed"], 5.0, settling)
+        return ends[channel] + logged_late(rows, delay, time_constant)[channel]
+
+    joint = problem(1, friction=lambda rows: added(rows, 0), load=lambda rows: added(rows, 1))
+    beside = beside_base(joint)
+    assert "torque_filter" in {one.fit.effect.name for one in beside.refused}
+    shape = {"distance": 40.0, "growth": 1.0}
+    start = EffectFit(BY_NAME["inertia"], shape, np.ones(2), np.eye(2), 99.0)
+    fit = Step.of(beside.precomputed, []).refined(start)
+    step = Step.of(beside.precomputed, [fit])
+    measurement = measurement_causes(step, beside.effects)
+    found = [replace(cause(), fit=fit, effects=("inertia",))]
+    extension = extend(joint, step.predicting_fit(), [fit])
+    both = np.concatenate(inertial(joint.table.position, joint.table.speed, 5.0, settling))
+    span = span_at_measured(joint, measurement)
+    true = np.sqrt(np.sum(np.square(both - span @ (span.T @ both))) / len(joint.friction))
+    (without,) = sizes_in_model(found, extension, step, measurement, joint)
+    (one,) = sizes_in_model(found, extension, step, measurement, joint, beside.refused)
+    assert not without.visible_interval[0] < true < without.visible_interval[1]
+    assert one.visible_interval[0] < true < one.visible_interval[1]
+    assert one.visible == without.visible
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,7 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import FORM, shown_of
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.measurement import CLEAR, beside_the_rest
+from frictioncli.diagnosis.search.possible_beside import possible_beside
 from frictioncli.diagnosis.search.slow_sensor import behind_sensor
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Basis, friction_only
@@ -75,6 +76,7 @@ def sizes_in_model(
     step: Step,
     measurement: Sequence[Cause],
     base: Problem,
+    refused: Sequence[Cause] = (),
 ) -> tuple[Cause, ...]:
     """Return causes with their sizes in an extended model, a lag of the gear behind a slow sensor.
 
@@ -90,13 +92,41 @@ def sizes_in_model(
         Effects of the measurement beside the base.
     base : Problem
         The rows with the base model about the measured temperature, which takes torque from causes.
+    refused : sequence of Cause, optional
+        Effects of the measurement that were refused beside the base: those that are possible beside
+        the causes may be there or not, and the intervals hold the sizes in both cases.
     """
     if all(one.fit.effect.measurement for one in causes):
         return tuple(causes)
     span = span_at_measured(base, measurement)
     weighted_fit = sizing_fit(step, measurement, extension.effects)
     stated = stated_sizes(causes, extension, step.problem, weighted_fit, span)
+    possible = possible_beside(extension.effects, step, measurement, refused)
+    if possible:
+        fits = (*extension.effects, *possible)
+        again = extend(step.problem, step.predicting_fit(), fits)
+        weighted_fit = sizing_fit(step, measurement, fits)
+        beside = stated_sizes(causes, again, step.problem, weighted_fit, span)
+        stated = tuple(_with_either(one, other) for one, other in zip(stated, beside, strict=True))
     return behind_sensor(stated, measurement, step.problem, base, span)
+
+
+def _with_either(one: Cause, other: Cause) -> Cause:
+    """Return a cause with intervals that hold those of another estimate of it.
+
+    The temperature of the gear is that of the extended model, and no other estimate of it.
+    """
+    if one.fit.effect.name == LAG.name or one.size_interval is None or other.size_interval is None:
+        return one
+
+    def either(first: tuple[float, float], second: tuple[float, float]) -> tuple[float, float]:
+        return min(first[0], second[0]), max(first[1], second[1])
+
+    return replace(
+        one,
+        size_interval=either(one.size_interval, other.size_interval),
+        visible_interval=either(one.visible_interval, other.visible_interval),
+    )
 
 
 def sizes_beside_each_other(
