@@ -34,7 +34,7 @@ def basis(table: EffectTable, *, rest: float, stiffening: float) -> Basis:
     """
     middle = (np.min(table.position) + np.max(table.position)) / 2
     angle = np.radians(table.angle - middle - rest)
-    return load_only(angle + stiffening * angle**3)
+    return load_only(angle * (1 + stiffening * np.square(angle)))
 
 
 EFFECT = Effect(
