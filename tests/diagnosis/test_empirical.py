@@ -118,6 +118,30 @@ def test_a_model_that_misses_a_new_run_by_far_more_than_noise_lacks_something(le
     assert structure.interval[0] < structure.size < structure.interval[1]
 
 
+@pytest.mark.parametrize("measured", [True, False])
+def test_the_model_lacks_nothing_at_temperatures_that_only_the_new_run_has(measured):
+    """Stiff grease below 38 °C, where the other runs were never, or were without it."""
+    seen = problem(3, every=16)
+    if not measured:
+        seen = seen.part(seen.table.temperature > 36.0)
+    new = problem(
+        4, every=16, friction=lambda rows: 0.5 * np.maximum(38 - rows.motor_temperature, 0)
+    )
+    step = Step.of(Precomputed.of(seen), [])
+    extension = extend(seen, step.predicting_fit(), [])
+    begun = structure_on_new_run(step, [], (new, extension), margin=MARGIN, floor=0.3, seed=0)
+    if measured:
+        structure, empirical = begun
+        assert (structure.axes, structure.channel, empirical) == (
+            ("temperature",),
+            "friction",
+            None,
+        )
+        assert structure.only_on == new.runs[-1]
+    else:
+        assert begun is None
+
+
 @pytest.mark.parametrize(
     ("before", "day", "expected"),
     [(None, None, None), (spot, spot, ("position",)), (None, spot, ("position",))],

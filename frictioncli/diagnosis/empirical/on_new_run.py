@@ -27,6 +27,10 @@ from frictioncli.diagnosis.search.step import Step
 _LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
 
+_BEYOND = 0.1
+"""How far the base model holds beyond the temperatures that it was fitted to, relative to their
+range; as far as the empirical term reaches."""
+
 _SLOW = frozenset({"temperature", "time"})
 """Axes along which days differ anyway."""
 
@@ -83,7 +87,10 @@ def structure_on_new_run(
     if found is not None and _was_there(found, step):
         return None
     if found is None or not _SLOW.isdisjoint(found.axes):
-        lacking = inadequacy(problem, *misfit, floor=floor, margin=margin)
+        within = _at_temperatures_of(step.problem, problem)
+        if within is None:
+            return None
+        lacking = inadequacy(within, *misfits(within, predicted), floor=floor, margin=margin)
         return None if lacking is None else (_located(lacking, step.problem, predicted), None)
     term = empirical_term(
         own,
@@ -96,6 +103,21 @@ def structure_on_new_run(
         base_is_of_others=True,
     )
     return replace(found, only_on=problem.runs[-1]), term
+
+
+def _at_temperatures_of(seen: Problem, new: Problem) -> Problem | None:
+    """Return a new run's rows at the temperatures of the runs seen; None with too few pairs.
+
+    Elsewhere its misfit is the error of an extrapolation: an exponential that fits from 25 to 60 °C
+    says little about 5 °C, and a day in the cold shows no change of the joint.
+    """
+    low, high = np.min(seen.table.temperature), np.max(seen.table.temperature)
+    further = _BEYOND * (high - low)
+    temperature = new.table.temperature
+    within = (temperature >= low - further) & (temperature <= high + further)
+    if len(np.unique(new.layout.row_pair[within])) < _LEAST_PAIRS:
+        return None
+    return new.part(within)
 
 
 def _located(lacking: Structure, seen: Problem, predicted: Extension) -> Structure:
