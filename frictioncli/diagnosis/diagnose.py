@@ -76,6 +76,8 @@ class Diagnosis:
         Effects of the measurement that are not named, and that the extension corrects all the same.
     extension : Extension or None
         The base with the causes and what is corrected, refitted.
+    predicted : Extension
+        The base refitted alone or with what is named, for the rows judged on.
     base : Problem
         The rows without the hold-out run, with the base model about which the extension is linear.
     judged : Problem
@@ -83,13 +85,11 @@ class Diagnosis:
     floor : float
         RMS of the noise that is new with each pair, which no model can predict. [N·m]
     search, tried : SearchResult, tuple of Effect
-        The last search and the catalogue, for the sizes that would have been named.
+        The last search and the catalogue, for sizes that would have been named.
     margin : float
         Smallest size worth a name. [N·m]
-    rmse : float
-        RMS misfit of the base model. [N·m]
-    worst : tuple of Misfit
-        The greatest mean misfits.
+    rmse, worst : float, tuple of Misfit
+        RMS misfit of the base model [N·m], and the greatest mean misfits.
     runs, held_out : tuple of str, str or None
         Runs of the diagnosis, and the hold-out run.
     ramps : RampEvidence or None
@@ -115,6 +115,7 @@ class Diagnosis:
     gain: Gain | None
     corrected: tuple[Cause, ...]
     extension: Extension | None
+    predicted: Extension
     base: Problem
     judged: Problem
     floor: float
@@ -223,27 +224,27 @@ def diagnose_joint(
             problem, new = lag.problem, lag.new
         causes = sizes_in_model(causes, extension, step, named.measurement, base, found.refused)
     appeared: tuple[Cause, ...] = ()
-    floor = found.floor
     modelled = extension or extend(problem, weighted_fit, fits)
     if new:
         predicted = predicting(modelled, causes)
         appeared = changes_on_new_run(
             NewRunMisfit.of(problem, new, predicted, weighted_fit, step.noise()),
             [one for one in effects if one.name not in {cause.fit.effect.name for cause in causes}],
-            floor=floor,
+            floor=found.floor,
             margin=margin,
         )
         for cause in appeared:
             modelled = extension = with_effect(modelled, cause.fit, len(causes))
         causes = (*causes, *appeared)
+    predicted = predicting(modelled, causes)
     if extension is not None:
         gain = measured_gain(
             new or problem,
-            predicting(extension, causes),
+            predicted,
             base=base_new or base,
             # a change that begins on the held-out run was fitted there
             basis="new_run" if new and not appeared else "within_run",
-            floor=floor,
+            floor=found.floor,
             seed=settings.seed,
         )
     empirical = empirical_term(
@@ -251,15 +252,14 @@ def diagnose_joint(
         (problem, modelled),
         (new, lambda one: predicting(one, causes)) if new else None,
         margin=margin,
-        floor=floor,
+        floor=found.floor,
         seed=settings.seed,
         structure=named.structure,
     )
     structure = unexplained(named.structure, causes, empirical, step, settings.alpha)
     if new and structure is None and empirical is None and not appeared:
-        unseen = new, predicting(modelled, causes)
         begun = structure_on_new_run(
-            step, causes, unseen, margin=margin, floor=floor, seed=settings.seed
+            step, causes, (new, predicted), margin=margin, floor=found.floor, seed=settings.seed
         )
         structure, empirical = begun or (None, None)
     corrected = noticed if extension is not None or empirical is not None else ()
@@ -279,9 +279,10 @@ def diagnose_joint(
         gain=gain,
         corrected=corrected,
         extension=extension,
+        predicted=predicted,
         base=problem,
         judged=new or problem,
-        floor=floor,
+        floor=found.floor,
         search=found,
         tried=tuple(effects),
         margin=margin,

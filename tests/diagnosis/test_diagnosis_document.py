@@ -113,9 +113,16 @@ def test_structure_along_a_load_that_the_angle_tells_may_be_along_the_angle(foun
 
 def test_what_is_left_on_the_new_run_is_found_along_its_axis(found):
     problem = found.judged
+    as_fitted = replace(
+        found.predicted,
+        changes=np.zeros_like(found.predicted.changes),
+        gravity=problem.gravity,
+        effects=(),
+    )
     clean = replace(
         found,
         extension=None,
+        predicted=as_fitted,
         judged=replace(
             problem,
             friction=problem.table.friction

@@ -7,7 +7,7 @@ A model is adequate where its misfit on a run that it has not seen is that of th
 
 import numpy as np
 
-from frictioncli.diagnosis.diagnose import Diagnosis, predicting
+from frictioncli.diagnosis.diagnose import Diagnosis
 from frictioncli.diagnosis.documents.remainder_record import RemainderRecord
 from frictioncli.diagnosis.fit.extension import misfits
 from frictioncli.diagnosis.search.largest_structure import left_structure
@@ -22,12 +22,9 @@ def remainder_record(diagnosis: Diagnosis) -> RemainderRecord | None:
     diagnosis : Diagnosis
         The diagnosis of a joint.
     """
-    problem, extension, floor = diagnosis.judged, diagnosis.extension, diagnosis.floor
-    friction, load = (
-        (problem.friction_misfit, problem.load_misfit)
-        if extension is None
-        else misfits(problem, predicting(extension, diagnosis.causes))
-    )
+    problem, floor = diagnosis.judged, diagnosis.floor
+    # the base as fitted may be that of a torque freed of its delay, which these rows have
+    friction, load = misfits(problem, diagnosis.predicted)
     rmse = float(np.sqrt(np.mean(problem.squared(friction, load))))
     if rmse <= ADEQUATE * floor:
         return None
