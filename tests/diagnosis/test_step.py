@@ -68,10 +68,11 @@ def test_noise_has_no_structure_beyond_chance():
     for seed in range(4):
         data = problem(seed, **DRIFTS[seed % 3])
         found = structures(Step.of(Precomputed.of(data), []))
-        assert list(found) == sorted(found, key=lambda one: one.p_value)
+        likely = [one.statistic for one in found if one.axes[0] != "load"]
+        assert likely == sorted(likely, reverse=True)
         assert {len(one.axes) for one in found} == {1, 2}
         assert all(one.interval[0] <= one.size <= one.interval[1] for one in found)
-        least.append(found[0].p_value)
+        least.append(min(one.p_value for one in found))
     assert np.sum(np.array(least) < 0.05) <= 1
 
 
