@@ -114,9 +114,13 @@ def sizes_in_model(
 def _with_either(one: Cause, other: Cause) -> Cause:
     """Return a cause with intervals that hold those of another estimate of it.
 
-    The temperature of the gear is that of the extended model, and no other estimate of it.
+    The temperature of the gear is that of the extended model, and no other estimate of it. Where
+    the other estimate may be 0, the data do not tell the cause from what it was fitted beside, and
+    which of both is there was for the search to decide.
     """
     if one.fit.effect.name == LAG.name or one.size_interval is None or other.size_interval is None:
+        return one
+    if other.size_interval[0] <= 0.0:
         return one
 
     def either(first: tuple[float, float], second: tuple[float, float]) -> tuple[float, float]:
