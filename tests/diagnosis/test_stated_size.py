@@ -171,11 +171,11 @@ def inertial(position, speed, inertia, settling):
     return (low + high) / 2, (low - high) / 2
 
 
-@pytest.mark.parametrize(
-    ("settling", "delay", "time_constant"), [(0.4, 0.018, 0.04), (0.5, 0.0, 0.055)]
-)
-def test_inertia_may_hide_the_filter_beside_which_it_is_as_large(settling, delay, time_constant):
-    """Beside the base alone the filter looks impossible; the interval allows for it yet."""
+def sizes_of_inertia(settling, delay, time_constant):
+    """Return the true size of an inertia behind a filter, and what is stated of it.
+
+    Without effects of the measurement that were refused beside the base, and with them.
+    """
 
     def added(rows, channel):
         ends = inertial(rows["position"], rows["speed"], 5.0, settling)
@@ -196,9 +196,22 @@ def test_inertia_may_hide_the_filter_beside_which_it_is_as_large(settling, delay
     true = np.sqrt(np.sum(np.square(both - span @ (span.T @ both))) / len(joint.friction))
     (without,) = sizes_in_model(found, extension, step, measurement, joint)
     (one,) = sizes_in_model(found, extension, step, measurement, joint, beside.refused)
+    return true, without, one
+
+
+def test_inertia_may_hide_the_filter_beside_which_it_is_as_large():
+    """Beside the base alone the filter looks impossible; the interval allows for it yet."""
+    true, without, one = sizes_of_inertia(0.4, 0.018, 0.04)
     assert not without.visible_interval[0] < true < without.visible_interval[1]
     assert one.visible_interval[0] < true < one.visible_interval[1]
     assert one.visible == without.visible
+
+
+def test_what_would_leave_a_cause_undetermined_does_not_count_in_its_interval():
+    """Beside the filter this inertia may be 0: then the search has decided which is there."""
+    _, without, one = sizes_of_inertia(0.5, 0.0, 0.055)
+    assert one.visible_interval == without.visible_interval
+    assert one.visible_interval[0] > 0
 
 
 @pytest.mark.parametrize(
