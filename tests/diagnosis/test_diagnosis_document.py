@@ -111,6 +111,17 @@ def test_structure_along_a_load_that_the_angle_tells_may_be_along_the_angle(foun
         assert ("another payload" in record.experiment) == told
 
 
+def test_next_step_for_structure_along_time_is_a_temperature_where_the_log_has_none(found):
+    structure = Structure(("time",), "friction", 1e-9, 90.0, 0.7, (0.5, 0.9))
+    table = found.base.table
+    unknown = np.full_like(table.speed, np.nan)
+    none = replace(table, motor_temperature=unknown, housing_temperature=unknown)
+    for base, told in ((found.base, False), (replace(found.base, table=none), True)):
+        record = unnamed_record(replace(found, structure=structure, base=base))
+        assert ("Log the temperature" in record.experiment) == told
+        assert ("another day" in record.experiment) != told
+
+
 def test_what_is_left_on_the_new_run_is_found_along_its_axis(found):
     problem = found.judged
     as_fitted = replace(

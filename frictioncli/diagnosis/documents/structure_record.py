@@ -8,6 +8,7 @@ from frictioncli.diagnosis.documents.empirical_record import LocatedRecord, gain
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.empirical.describe import experiment
 from frictioncli.diagnosis.search.axis_columns import friction_tells_load, load_over_angle
+from frictioncli.diagnosis.search.confounded import has_temperature
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 
 
@@ -76,7 +77,7 @@ def unnamed_record(diagnosis: Diagnosis) -> CauseRecord:
         p_value=structure.p_value,
         seen_in=along,
         figure=None,
-        experiment=_experiment(diagnosis) or _experiment_along(found.axis, _or_angle(diagnosis)),
+        experiment=_experiment(diagnosis) or _experiment_along(found.axis, diagnosis),
     )
 
 
@@ -135,12 +136,22 @@ def _or_angle(diagnosis: Diagnosis) -> str:
     return " The load is the same at the same angle here: it may as well be along the angle."
 
 
-def _experiment_along(axes: tuple[str, ...], or_angle: str) -> str:
+def _experiment_along(axes: tuple[str, ...], diagnosis: Diagnosis) -> str:
     """Return what to measure next about structure that no form describes."""
-    if axes == ("position",) or or_angle:
+    if axes == ("position",) or _or_angle(diagnosis):
         return (
             "Move through the whole stroke in narrow angle bins, at three speeds, cold and warm,"
             " and with another payload: it then stays at its angle, or moves with the load."
+        )
+    if axes == ("time",) and not has_temperature(diagnosis.base):
+        return (
+            "Log the temperature of the motor: friction that changes as the joint warms up or"
+            " cools down varies with time."
+        )
+    if axes == ("time",):
+        return (
+            "Repeat the same moves over several hours and on another day, and note what changes:"
+            " the room, pauses, payloads, what is mounted, oil, and the brake."
         )
     return f"Measure more values of {_along(axes)}, in random order, on another day."
 
