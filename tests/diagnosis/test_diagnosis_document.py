@@ -112,7 +112,8 @@ def test_structure_along_a_load_that_the_angle_tells_may_be_along_the_angle(foun
 
 
 def test_next_step_for_structure_along_time_is_a_temperature_where_the_log_has_none(found):
-    structure = Structure(("time",), "friction", 1e-9, 90.0, 0.7, (0.5, 0.9))
+    along = {"axes": ("time",), "channel": "friction", "p_value": 1e-9, "statistic": 90.0}
+    structure = Structure(**along, size=0.7, interval=(0.5, 0.9))
     table = found.base.table
     unknown = np.full_like(table.speed, np.nan)
     none = replace(table, motor_temperature=unknown, housing_temperature=unknown)
