@@ -17,10 +17,13 @@ from frictioncli.logs.log_source import RawBatch, UnreadableLog
 from frictioncli.logs.runs.opening import OpenedLog
 from frictioncli.logs.samples.log_rows import LogRows, RejectedRows
 from frictioncli.logs.samples.row_checks import drop_missing_values
+from frictioncli.logs.samples.temperature_dropouts import without_dropouts
 
 _FIRST_BYTES = 1 << 12
 _NOTHING: Mapping[int, tuple[int, float]] = {}
 """Shared by all logs that have none: there may be 100,000."""
+
+_TEMPERATURES = frozenset({names.MOTOR_TEMPERATURE, names.HOUSING_TEMPERATURE})
 
 _MAX_OUTLIERS = 3
 _MAX_OUTLIER_SHARE = 0.01
@@ -189,10 +192,13 @@ def _converted(batch: RawBatch, planned: PlannedLog) -> LogRows:
             if (conversion.factor, conversion.offset) != (1.0, 0.0):
                 with np.errstate(over="ignore"):  # infinite values are rejected later
                     values = values * conversion.factor + conversion.offset
-            if name in (names.MOTOR_TEMPERATURE, names.HOUSING_TEMPERATURE):
+            if name in _TEMPERATURES:
                 values = plausible_temperature(values)
             columns[plan.channels.joint, name] = values
     time = next(values for (_, name), values in columns.items() if name == names.TIME)
+    for (joint, name), values in columns.items():
+        if name in _TEMPERATURES:
+            columns[joint, name] = without_dropouts(time, values)
     return LogRows(batch.lines, time, columns)
 
 
