@@ -38,3 +38,13 @@ def test_friction_that_oscillates_by_less_is_drift(period):
     found = along_time(0.02 * FRICTION, period)
     assert found.interval[0] < 0.015 * FRICTION
     assert found.p_value == 1.0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_pairs_that_scatter_more_than_any_joint_drifts_have_no_structure_along_time(seed):
+    def scattered(rows):
+        moment, pair = np.unique(rows.time, return_inverse=True)
+        return np.random.default_rng(seed).normal(0.0, 0.06 * FRICTION, len(moment))[pair]
+
+    found = structures(Step.of(Precomputed.of(problem(5, friction=scattered)), []))
+    assert all(one.p_value > 5e-3 for one in found if one.axes == ("time",))

@@ -39,11 +39,12 @@ from frictioncli.diagnosis.search.axis_columns import (
     cosines,
 )
 from frictioncli.diagnosis.search.carried_load import most_likely_constant
+from frictioncli.diagnosis.search.drift_beyond import drift_beyond
 from frictioncli.diagnosis.search.margin import channel_margin
-from frictioncli.diagnosis.search.realised_size import chance_of_less, realised, realised_drift
+from frictioncli.diagnosis.search.realised_size import realised
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.distributions import chi2_tail
-from frictioncli.effects.base import Basis, Channel
+from frictioncli.effects.base import CHANNELS, Basis, Channel
 
 _DRIFT = 0.015
 """Greatest RMS of a drift that is no structure, relative to the mean friction."""
@@ -239,20 +240,22 @@ def _structures(step: Step) -> tuple[Structure, ...]:
         if finer is not None and finer[2] > of_load[2] - _TOLD_BY_ANGLE:
             # more functions may cancel the discrepancy's: the size is that of the fewer
             by_place[_ANGLE_AND_SPEED] = (*finer[:3], *of_load[3:])
-    most = np.sqrt(expected.most_drift)
-    found = [(one, np.inf) for one in by_place.values() if one]
-    found += [(_drift(step, expected, null, number), most[number]) for number in range(2)]
+    found = [(one, 1.0) for one in by_place.values() if one]
+    for number, channel in enumerate(CHANNELS):
+        drift = drift_beyond(step, expected, null, number)
+        found.append(
+            ((("time",), channel, drift.statistic, drift.size, drift.interval), drift.chance)
+        )
     every = (
         Structure(
             axes=names,
             channel=channel,
-            p_value=min(1.0, len(found) * min(chi2_tail(statistic, 1) / 2, within)),
+            p_value=min(1.0, len(found) * min(chi2_tail(statistic, 1) / 2, chance)),
             statistic=max(statistic, 0.0),
             size=size,
             interval=interval,
         )
-        for (names, channel, statistic, size, interval), least in found
-        for within in [chance_of_less(size, interval, least)]
+        for (names, channel, statistic, size, interval), chance in found
     )
 
     def behind(one: Structure) -> float:
@@ -307,13 +310,3 @@ def _beside_function(
 def _unit_amplitude(step: Step) -> float:
     """Return the logarithm of the noise of a pair, where no discrepancy is expected."""
     return float(np.log(step.precomputed.start.between[0]) / 2)
-
-
-def _drift(step: Step, expected: Components, null: MixedFit, number: int) -> _Found:
-    """Return what the drift in one channel explains beyond what any joint has."""
-    most = np.where(np.arange(2) == number, np.inf, expected.most_drift)
-    freer = replace(expected, most_drift=(float(most[0]), float(most[1])))
-    fit = fit_variances(freer, step.products, step.known, null.variances, step.fit.variances)
-    channel: Channel = "load" if number else "friction"
-    size, interval = realised_drift(step, fit, number)
-    return ("time",), channel, null.objective - fit.objective, size, interval

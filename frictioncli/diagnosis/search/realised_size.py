@@ -7,11 +7,7 @@ from frictioncli.diagnosis.fit.columns import RANK
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.fit.mixed_model import MixedFit
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.distributions import chi2_tail
 from frictioncli.linear_algebra import orthonormal_basis
-
-_LEAST_CHANCE = 1e-6
-"""Least probability of a size beyond what it may be, which is a rule of experience."""
 
 
 def realised(inner: Array, mean: Array, covariance: Array) -> tuple[float, tuple[float, float]]:
@@ -37,25 +33,6 @@ def realised(inner: Array, mean: Array, covariance: Array) -> tuple[float, tuple
     reach = Z95 * np.sqrt(max(variance, 0.0))
     low, high = max(square - reach, 0.0), square + reach
     return float(np.sqrt(square)), (float(np.sqrt(low)), float(np.sqrt(high)))
-
-
-def chance_of_less(size: float, interval: tuple[float, float], most: float) -> float:
-    """Return the probability that a size is no more than it may be; 1 where that is not unlikely.
-
-    Likelihoods do not tell a drift that oscillates from one that is slow and now and then as large.
-    What it did on these runs is known all the same.
-
-    Parameters
-    ----------
-    size, interval : float, (float, float)
-        The size and its 95 % interval. [N·m]
-    most : float
-        What it may be. [N·m]
-    """
-    if interval[0] <= most:
-        return 1.0
-    chance = chi2_tail((Z95 * (size - most) / (size - interval[0])) ** 2, 1) / 2
-    return max(chance, _LEAST_CHANCE)
 
 
 def realised_drift(step: Step, fit: MixedFit, number: int) -> tuple[float, tuple[float, float]]:
