@@ -10,6 +10,7 @@ References
 .. [1] H. Rue and L. Held, Gaussian Markov Random Fields, 2005, doi:10.1201/9780203492024.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -91,6 +92,35 @@ def correlated(correlation: Array, right: Array) -> Array:
     backward, _ = dtbtrs(banded, right, uplo="L", trans="T", diag="U")
     innovation = 1 - np.square(correlation)
     return np.asarray(dtbtrs(banded, (backward.T * innovation).T, uplo="L", diag="U")[0])
+
+
+def whitened(correlation: Array, drift: float, white: Array, right: Array) -> Array:
+    """Return columns made white: the innovations of each pair by those before it.
+
+    A Kalman filter: inner products of such columns are those with the inverse covariance between.
+
+    Parameters
+    ----------
+    correlation : ndarray, shape (pairs,)
+        As of :class:`Drift`.
+    drift : float
+        Standard deviation of the drift. [N·m]
+    white : ndarray, shape (pairs,)
+        Variance that is independent between pairs. [(N·m)²]
+    right : ndarray, shape (pairs, columns)
+        The columns. [N·m]
+    """
+    innovations = np.empty_like(right)
+    known, variance = np.zeros(right.shape[1]), 0.0
+    for number, (before, own) in enumerate(zip(correlation.tolist(), white.tolist(), strict=True)):
+        known = before * known
+        variance = before**2 * variance + (1 - before**2) * drift**2
+        beyond = right[number] - known
+        innovations[number] = beyond / math.sqrt(variance + own)
+        share = variance / (variance + own)
+        known = known + share * beyond
+        variance *= 1 - share
+    return innovations
 
 
 def posterior_factor(diagonal: Array, beside: Array, white: Array) -> Array:

@@ -31,6 +31,7 @@ from frictioncli.model.drift import (
     inverse_diagonal,
     posterior_factor,
     solved,
+    whitened,
 )
 from frictioncli.model.likeliest_noise import NoiseLikelihood, likeliest
 
@@ -109,6 +110,10 @@ class PairCovariance:
         """Return the covariance times ``right``, shape (pairs, columns)."""
         drift = self.drift**2 * correlated(self.correlation, right)
         return (right.T * self.white).T + drift
+
+    def whitened(self, right: Array) -> Array:
+        """Return columns made white by the covariance, shape (pairs, columns) [-]."""
+        return whitened(self.correlation, self.drift, self.white, right)
 
     def draw(self, generator: np.random.Generator) -> Array:
         """Return one random disturbance of the pair means, shape (pairs,) [N·m]."""

@@ -106,6 +106,31 @@ def test_coefficients_are_those_of_weighted_rows(seed):
     np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-9)
 
 
+def test_coefficients_by_the_covariance_are_those_of_generalised_least_squares():
+    """Deviations from the pair means in units of point noise, means by the dense covariance."""
+    friction, load = columns(5), columns(6)
+    generator = np.random.default_rng(7)
+    targets = generator.normal(size=ROWS), generator.normal(size=ROWS)
+    normal, right = np.zeros((3, 3)), np.zeros(3)
+    for part, target, noise, extra in (
+        (friction, targets[0], NOISE, EXTRA),
+        (load, targets[1], QUIET, 0 * EXTRA),
+    ):
+        precision = np.linalg.inv(dense(PAIRS, noise, extra))
+        # within a pair only its deviations count, of any mean
+        within = np.kron(np.eye(16), np.eye(4) - 0.25) / noise.point**2
+        means = np.kron(np.eye(16), np.full((1, 4), 0.25))
+        whole = within + means.T @ precision @ means
+        normal += part.T @ whole @ part
+        right += part.T @ whole @ target
+    fit = weighted_fit().by_covariance()
+    found = fit.coefficients(friction, load, targets)
+    np.testing.assert_allclose(found, np.linalg.solve(normal, right), rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(
+        fit.error_covariance(friction, load), np.linalg.inv(normal), rtol=1e-6
+    )
+
+
 def test_covariance_is_what_repeated_noise_makes_of_the_estimates():
     """4,000 draws of drift, pair and point noise in both channels: errors are within 5 %."""
     draws = 4000

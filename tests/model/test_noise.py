@@ -34,6 +34,14 @@ def test_solve_and_times_agree_with_the_dense_matrix():
     assert covariance.log_determinant == pytest.approx(np.linalg.slogdet(dense())[1], rel=1e-9)
 
 
+def test_whitened_columns_are_the_lower_triangular_innovations():
+    """The Cholesky factor of the covariance, in the order of the pairs, makes columns white."""
+    covariance = pair_covariance(NOISE, time=TIME, run=RUN, bins=BINS)
+    right = np.random.default_rng(0).normal(size=(7, 3))
+    expected = np.linalg.solve(np.linalg.cholesky(dense()), right)
+    np.testing.assert_allclose(covariance.whitened(right), expected, rtol=1e-8)
+
+
 def test_restricted_likelihood_agrees_with_its_definition():
     """-1/2 (ln|V| + ln|X'V^-1 X| + r'Pr) with P = V^-1 - V^-1 X (X'V^-1X)^-1 X'V^-1."""
     generator = np.random.default_rng(1)

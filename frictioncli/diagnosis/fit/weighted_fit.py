@@ -40,12 +40,16 @@ class Weights:
         Standard deviation of each pair's mean by which it is weighted. [N·m]
     covariance : PairCovariance
         Covariance of the noise of the pair means.
+    whitening : bool
+        Whether the pair means are made white by this covariance, instead of divided by their
+        deviations.
     """
 
     layout: PairLayout
     point: float
     deviation: Array
     covariance: PairCovariance
+    whitening: bool = False
 
     @classmethod
     def of(cls, layout: PairLayout, noise: Noise, extra: Array) -> "Weights":
@@ -70,6 +74,10 @@ class Weights:
         """Return weights under which all rows weigh the same."""
         return replace(self, deviation=self.point / np.sqrt(self.layout.bins))
 
+    def by_covariance(self) -> "Weights":
+        """Return weights of generalised least squares, by the covariance of the noise."""
+        return replace(self, whitening=True)
+
     def weighted(self, columns: Array) -> Array:
         """Return weighted deviations from the pair means and, below them, weighted pair means.
 
@@ -79,10 +87,14 @@ class Weights:
             Columns in the channel. [N·m]
         """
         within, means = self.layout.contrasts_and_means(columns)
+        if self.whitening:
+            return np.vstack([within / self.point, self.covariance.whitened(means)])
         return np.vstack([within / self.point, (means.T / self.deviation).T])
 
     def correlated(self, weighted: Array) -> Array:
         """Return C X: the correlation matrix of the weighted noise times weighted columns."""
+        if self.whitening:
+            return weighted
         within, between = np.split(weighted, [-len(self.deviation)])
         size = self.deviation[:, np.newaxis]
         return np.vstack([within, self.covariance.times(between / size) / size])
@@ -104,6 +116,10 @@ class WeightedFit:
     friction: Weights
     load: Weights
     unfitted: tuple[tuple[Array, Array], ...] = ()
+
+    def by_covariance(self) -> "WeightedFit":
+        """Return the generalised least squares by the covariance of the noise."""
+        return replace(self, friction=self.friction.by_covariance(), load=self.load.by_covariance())
 
     def beside(self, friction: Array, load: Array) -> "WeightedFit":
         """Return the fit with further torque that is there or not, and is not fitted.
