@@ -142,7 +142,9 @@ def first_above(
     alpha: float,
     is_known: Callable[[Structure], bool] = lambda _: False,
 ) -> Structure | None:
-    """Return the first of some structures that is significant and above the margin.
+    """Return the most likely structure above the margin, if any is significant and surely above it.
+
+    Where one is surely above the margin, that much is left; along which axis, the likeliest says.
 
     Parameters
     ----------
@@ -153,13 +155,14 @@ def first_above(
     margin, alpha, is_known
         As of :func:`unnamed_structure`.
     """
-    for one in found:
-        if is_known(one):
-            continue
+    significant = [
+        one for one in found if one.p_value < min(_SIGNIFICANT, alpha) and not is_known(one)
+    ]
+    above = [one for one in significant if one.size > channel_margin(problem, one.channel, margin)]
+    for one in above:
         least = one.size if one.p_value < _NO_DOUBT else one.interval[0]
-        smallest = channel_margin(problem, one.channel, margin)
-        if one.p_value < min(_SIGNIFICANT, alpha) and least > smallest:
-            return replace(one, or_load=_may_be_of_load(one, found))
+        if least > channel_margin(problem, one.channel, margin):
+            return replace(above[0], or_load=_may_be_of_load(above[0], found))
     return None
 
 
