@@ -14,19 +14,21 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.extension import Extension, extend, with_shapes
+from frictioncli.diagnosis.fit.extension import Extension, extend
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, visible_size
+from frictioncli.diagnosis.fit.left_by_base import span_of
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.effect_size import FORM, shown_of
+from frictioncli.diagnosis.search.fitted_size import fitted_sizes
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.measurement import CLEAR, beside_the_rest
 from frictioncli.diagnosis.search.possible_beside import possible_beside
 from frictioncli.diagnosis.search.slow_sensor import behind_sensor
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.effects.base import Basis, friction_only
 from frictioncli.effects.thermal_lag import EFFECT as LAG
+
+_KNOWN = 0.5
+"""Lower end of the interval of a size, relative to it, from which on the size is well known."""
 
 
 def span_at_measured(base: Problem, measurement: Sequence[Cause]) -> Array:
@@ -70,6 +72,56 @@ def sizing_fit(
     return beside_the_rest(step.problem, fit, measurement, fitted)
 
 
+def _at_least(
+    stated: Sequence[Cause],
+    fits: Sequence[EffectFit],
+    step: Step,
+    sizing: WeightedFit,
+    span: Array,
+) -> tuple[Cause, ...]:
+    """Return causes with intervals that do not reach below what is sure in spite of a drift.
+
+    With all rows alike a slow drift of the noise may leave a size undetermined. Weighted by the
+    covariance of the noise, what changes faster than the drift decides. Of what is slow a part is
+    then taken for drift: such a size is a lower limit.
+
+    Parameters
+    ----------
+    stated : sequence of Cause
+        Causes with their sizes, in the order of the first of `fits`.
+    fits : sequence of EffectFit
+        The effects that extend the model.
+    step : Step
+        Base and causes, with the noise that suits them best.
+    sizing : WeightedFit
+        The fit by which the sizes were stated.
+    span : ndarray, shape (2 * rows, rank)
+        What can take torque from a cause, as of :func:`span_at_measured`.
+    """
+    if all(one.visible_interval[0] >= _KNOWN * one.visible for one in stated):
+        return tuple(stated)
+    sizing = sizing.by_covariance()
+    again = extend(step.problem, sizing, fits)
+    weighted = fitted_sizes(stated, again, step.problem, sizing, span)
+    return tuple(_with_limit(one, other) for one, other in zip(stated, weighted, strict=True))
+
+
+def _with_limit(one: Cause, weighted: Cause) -> Cause:
+    """Return a cause whose size is no less than a lower limit that agrees with its interval."""
+    low, high = one.visible_interval
+    least = weighted.visible_interval[0]
+    undetermined = not one.fit.effect.measurement and low < _KNOWN * one.visible
+    if not undetermined or one.size_interval is None or not low < least <= weighted.visible <= high:
+        return one
+    return replace(
+        one,
+        size=one.size if one.size > least else weighted.size,
+        size_interval=(max(least, one.size_interval[0]), one.size_interval[1]),
+        visible=one.visible if one.visible > least else weighted.visible,
+        visible_interval=(least, high),
+    )
+
+
 def sizes_in_model(
     causes: Sequence[Cause],
     extension: Extension,
@@ -100,13 +152,14 @@ def sizes_in_model(
         return tuple(causes)
     span = span_at_measured(base, measurement)
     weighted_fit = sizing_fit(step, measurement, extension.effects)
-    stated = stated_sizes(causes, extension, step.problem, weighted_fit, span)
+    stated = fitted_sizes(causes, extension, step.problem, weighted_fit, span)
+    stated = _at_least(stated, extension.effects, step, weighted_fit, span)
     possible = possible_beside(extension.effects, step, measurement, refused)
     if possible:
         fits = (*extension.effects, *possible)
         again = extend(step.problem, step.predicting_fit(), fits)
         weighted_fit = sizing_fit(step, measurement, fits)
-        beside = stated_sizes(causes, again, step.problem, weighted_fit, span)
+        beside = fitted_sizes(causes, again, step.problem, weighted_fit, span)
         stated = tuple(_with_either(one, other) for one, other in zip(stated, beside, strict=True))
     return behind_sensor(stated, measurement, step.problem, base, span)
 
@@ -183,104 +236,3 @@ def sizes_beside_each_other(
         del among[least]
         gone.append(stated[least])
     return tuple(gone)
-
-
-def stated_sizes(
-    causes: Sequence[Cause],
-    extension: Extension,
-    problem: Problem,
-    weighted_fit: WeightedFit,
-    span: Array,
-) -> tuple[Cause, ...]:
-    """Return named causes with the sizes that the extended model gives them.
-
-    Effects of the measurement keep theirs. The size of a lag of the gear is what the base at the
-    measured temperature leaves of the friction at the hidden one, with all that its parameters add:
-    a gear that warms more and friction that falls less with temperature compensate each other, so
-    that the size is known though neither is.
-
-    Parameters
-    ----------
-    causes : sequence of Cause
-        Causes that are named, in the order of the first effects of the extension.
-    extension : Extension
-        The extended model.
-    problem : Problem
-        The rows, as the causes were found.
-    weighted_fit : WeightedFit
-        As of :func:`sizing_fit`.
-    span : ndarray, shape (2 * rows, rank)
-        What can take torque from a cause, as of :func:`span_at_measured`.
-    """
-    friction, load = with_shapes(problem, extension.effects)
-    covariance = weighted_fit.error_covariance(friction, load, whole=True)
-    found = []
-    for number, cause in enumerate(causes):
-        if cause.fit.effect.measurement:
-            found.append(cause)
-            continue
-        one = extension.effects[number]
-        own = np.r_[extension.place(number), extension.shape_place(number)]
-        # to first order a change of the shape is a change of torque, and adds to no size by itself
-        coefficients = np.append(one.coefficients, np.zeros(len(one.effect.shape)))
-        if one.effect.name == LAG.name:
-            own = np.r_[np.arange(len(extension.names)), own]
-            coefficients = np.append(extension.changes, coefficients)
-        columns = Basis(friction[:, own], load[:, own])
-        fitted = columns, coefficients, covariance[np.ix_(own, own)]
-        if one.effect.name == LAG.name:
-            fitted = _with_simulated(problem, *fitted)
-        found.append(_stated(cause, one, problem, span, fitted))
-    return tuple(found)
-
-
-def _with_simulated(
-    problem: Problem, columns: Basis, coefficients: Array, covariance: Array
-) -> tuple[Basis, Array, Array]:
-    """Return columns, coefficients and their covariance with the simulated friction before them.
-
-    At the measured temperature the base leaves nothing of it.
-    """
-    simulated = friction_only(problem.friction - problem.friction_misfit)
-    before = (np.column_stack(one) for one in zip(simulated, columns, strict=True))
-    return Basis(*before), np.append(1.0, coefficients), np.pad(covariance, ((1, 0), (1, 0)))
-
-
-def _stated(
-    cause: Cause,
-    one: EffectFit,
-    problem: Problem,
-    span: Array,
-    fitted: tuple[Basis, Array, Array],
-) -> Cause:
-    """Return a cause with its sizes, from its columns, their coefficients and the covariance."""
-    columns, coefficients, covariance = fitted
-
-    def size_of(both: Array) -> tuple[float, tuple[float, float]]:
-        shown = shown_of(problem, one.effect, both)
-        size, low, high = visible_size(shown, coefficients, covariance)
-        below, above = np.hypot([size - low, high - size], Z95 * FORM * size)
-        return size, (max(float(size - below), 0.0), float(size + above))
-
-    visible, interval = size_of(left_by(span, columns))
-    size, size_interval = visible, interval
-    if len(one.coefficients) == 1:
-        in_friction = one.effect.channel == "friction"
-        torque = columns.friction if in_friction else columns.load
-        whole, whole_interval = size_of(_in_one(torque, in_friction=in_friction))
-        # where the base may take any of it, only what the base leaves is known
-        if whole_interval[0] > 0.0 or interval[0] <= 0.0:
-            size, size_interval = whole, whole_interval
-    return replace(
-        cause,
-        size=size,
-        size_interval=size_interval,
-        visible=visible,
-        visible_interval=interval,
-    )
-
-
-def _in_one(torque: Array, *, in_friction: bool) -> Array:
-    """Return torque in one channel, friction above load."""
-    nothing = np.zeros_like(torque)
-    return np.vstack([torque, nothing] if in_friction else [nothing, torque])
