@@ -2,7 +2,8 @@ r"""Starts of moves on one grid of samples, and what the torque consists of ther
 
 Every signal is smoothed as the acceleration is, twice by the slope of a local line: a shift between
 torque and acceleration is then no work of the smoothing. Positions are known at the samples only;
-the smoothed value of a signal *x* is the slope of its integral along a cubic spline.
+the smoothed value of a signal *x* is the slope of its integral along a cubic spline. Smoothed signals
+vary over some hundredths of a second, so that of a fast log every few samples tell all of it.
 """
 
 from collections.abc import Sequence
@@ -26,6 +27,14 @@ MOST_STARTS = 120
 
 _HALF_WINDOW = 0.015
 """Half of the time over which position and velocity are differentiated. [s]"""
+
+_INTERVAL = 0.004
+"""Time between samples of smoothed signals up to which nothing is lost. [s]
+
+At half of 1/(4 ms) the smoothing leaves a thousandth of a signal."""
+
+_WHOLE = 0.02
+"""Share of a sampling period by which a number of them may miss that time."""
 
 _ONSET = 0.04
 """Time after the start of a move in which friction builds up as no model knows. [s]"""
@@ -56,16 +65,20 @@ _SAME_SPEED = 0.03
 class StartWindows:
     """Signals at the starts of moves, a row per start and a column per sample.
 
+    Of a fast log every few samples stand for all.
+
     Attributes
     ----------
     period : float
-        Sampling period. [s]
+        Sampling period of the log. [s]
+    stride : int
+        Sampling periods from one sample to the next.
     torque : ndarray, shape (starts, samples)
         Logged torque. [N·m]
-    since : ndarray, shape (samples,)
-        Time since the start of the move. [s]
-    moving : ndarray of bool, shape (starts, samples)
-        Samples with known neighbours while the joint moves.
+    since : ndarray, shape (logged,)
+        Time since the start of the move, of all samples of the log. [s]
+    moving : ndarray of bool, shape (starts, logged)
+        Samples of the log with known neighbours while the joint moves.
     gravity : ndarray, shape (starts, samples)
         Torque of gravity; 0 where it is not known in the unit of the torque. [N·m]
     turned : ndarray or None, shape (starts, samples)
@@ -83,6 +96,7 @@ class StartWindows:
     """
 
     period: float
+    stride: int
     torque: Array
     since: Array
     moving: Flags
@@ -120,15 +134,25 @@ class StartWindows:
         rows = rows[rows["move"].isin(regular)]
         return _assembled(_Grid.of(rows, period), sign, problem, temperature)
 
-    def used(self, delay: float) -> Flags:
-        """Return the samples that the model describes, shape (starts, samples).
+    def weights(self, delay: float) -> Array:
+        """Return square roots of the weights of the samples, shape (starts, samples) [-].
+
+        A sample has the share of the log about it that the model describes, or 0. With whole ones
+        alone, the delay would depend on which samples stand for all: most of the misfit is where
+        that share begins.
 
         Parameters
         ----------
         delay : float
             Time by which the torque is late: friction builds up as much later in the log. [s]
         """
-        return self.moving & (self.since > _ONSET + max(delay, 0.0))
+        from scipy.ndimage import correlate1d  # slow to import, and only needed with ramps
+
+        described = self.moving & (self.since > _ONSET + max(delay, 0.0))
+        # as if squares were linear between samples
+        near = 1.0 - np.abs(np.arange(1 - self.stride, self.stride)) / self.stride
+        share = correlate1d(described.astype(float), near / self.stride, axis=1, mode="constant")
+        return np.sqrt(share[:, _standing_for_all(self.since, self.stride)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,6 +231,7 @@ def _assembled(grid: _Grid, sign: int, problem: Problem, temperature: str) -> St
 
     period = float(grid.since[1] - grid.since[0])
     half = max(round(_HALF_WINDOW / period), 1)
+    stride = max(int(_INTERVAL / period + _WHOLE), 1)
     velocity = _slope(grid.position, period, half)
 
     def smooth(values: Array, times: int) -> Array:
@@ -240,21 +265,32 @@ def _assembled(grid: _Grid, sign: int, problem: Problem, temperature: str) -> St
     ends = np.cumsum(grid.known[:, ::-1], axis=1)[:, ::-1]
     level = np.round(np.log(grid.first["speed"].to_numpy(float)) / _SAME_SPEED)
     conditions = pd.MultiIndex.from_arrays([level, direction[:, 0]])
+    chosen = _standing_for_all(grid.since, stride)
+
+    def smoothed(values: Array, times: int) -> Array:
+        return smooth(values, times)[:, chosen]
+
     return StartWindows(
         period=period,
-        torque=smooth(grid.torque, 2),
+        stride=stride,
+        torque=smoothed(grid.torque, 2),
         since=grid.since,
         moving=(grid.since > 0) & (along > _SLOWEST) & (ends > 2 * half + 2),
-        gravity=smooth(gravity, 2),
-        turned=smooth(grid.position - grid.position[:, :1], 2),
-        friction=sign * smooth(friction, 1),
-        inertial=tuple(inertial),
+        gravity=smoothed(gravity, 2),
+        turned=smoothed(grid.position - grid.position[:, :1], 2),
+        friction=sign * smoothed(friction, 1),
+        inertial=tuple(one[:, chosen] for one in inertial),
         frictional=tuple(
-            smooth(one, 1)
+            smoothed(one, 1)
             for one in (*built_up, slow, moving * np.abs(velocity), *_along_angle(grid, moving))
         ),
         conditions=pd.factorize(conditions)[0],
     )
+
+
+def _standing_for_all(since: Array, stride: int) -> slice:
+    """Return which samples stand for all: one in each stride, that of the start among them."""
+    return slice(int(np.argmin(np.abs(since))) % stride, None, stride)
 
 
 def _along_angle(grid: _Grid, moving: Array) -> list[Array]:

@@ -31,7 +31,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from frictioncli.arrays import Array, Flags
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.ramps.evidence import RampEstimate, RampLog
 from frictioncli.diagnosis.ramps.logged_response import responded
@@ -156,9 +156,9 @@ def torque_timing(ramps: RampLog, problem: Problem, temperature: str) -> TorqueT
 
 def timing_of(windows: StartWindows) -> TorqueTiming:
     """Return delay and filter of the torque in the samples around starts of moves."""
-    windows, used, found = _with_loads(windows)
-    misfit = _residual(windows, used, found)
-    point, covariance, freedom = _one_step(windows, used, found)
+    windows, weight, found = _with_loads(windows)
+    misfit = _residual(windows, weight, found)
+    point, covariance, freedom = _one_step(windows, weight, found)
     reach = -t_quantile(1 - _CONFIDENT, freedom)
     shift, smear = (
         RampEstimate(value, value - reach * error, value + reach * error)
@@ -173,43 +173,43 @@ def timing_of(windows: StartWindows) -> TorqueTiming:
         shift=shift,
         smear=smear,
         rivals=rivals,
-        rms=float(np.sqrt(np.sum(np.square(misfit)) / max(used.sum(), 1))),
+        rms=float(np.sqrt(np.sum(np.square(misfit)) / max(np.sum(np.square(weight)), 1))),
         starts=len(windows.torque),
         period=windows.period,
     )
 
 
-def _with_loads(windows: StartWindows) -> tuple[StartWindows, Flags, Array]:
+def _with_loads(windows: StartWindows) -> tuple[StartWindows, Array, Array]:
     """Return windows with all loads known, unless others explain far more, and their best fit."""
     fits = []
     for one in (replace(windows, turned=None), windows):
-        used, found = _found(one)
-        left = float(np.sum(np.square(_residual(one, used, found))))
-        fits.append((left, (one, used, found)))
+        weight, found = _found(one)
+        left = float(np.sum(np.square(_residual(one, weight, found))))
+        fits.append((left, (one, weight, found)))
     (left, known), (left_beside, unknown) = fits
     return unknown if left_beside < _OF_UNKNOWN_LOAD * left else known
 
 
-def _found(windows: StartWindows) -> tuple[Flags, Array]:
-    """Return the samples that are used, and shift, smear and lateness with the least misfit."""
-    used = windows.used(0.0)
+def _found(windows: StartWindows) -> tuple[Array, Array]:
+    """Return the weights of samples, and shift, smear and lateness with the least misfit."""
+    weight = windows.weights(0.0)
     first = min(
         (np.array([shift, smear, 0.0]) for shift, smear in _STARTS),
-        key=lambda point: float(np.sum(np.square(_residual(windows, used, point)))),
+        key=lambda point: float(np.sum(np.square(_residual(windows, weight, point)))),
     )
-    found = _fitted(windows, used, first)
+    found = _fitted(windows, weight, first)
     # a late onset of friction looks like a smear of up to a sample
     smear_for_sure = max(found[1] - windows.period**2, 0.0)
-    used = windows.used(found[0] - math.sqrt(smear_for_sure))
-    return used, _fitted(windows, used, found)
+    weight = windows.weights(found[0] - math.sqrt(smear_for_sure))
+    return weight, _fitted(windows, weight, found)
 
 
-def _fitted(windows: StartWindows, used: Flags, first: Array) -> Array:
+def _fitted(windows: StartWindows, weight: Array, first: Array) -> Array:
     """Return shift [s], smear [s²] and lateness of friction [s] with the least misfit."""
     lowest = np.array([DELAYS[0], 0.0, -_LATENESS])
     highest = np.array([DELAYS[1] + LONGEST_FILTER, LONGEST_FILTER**2, _LATENESS])
     found = least_squares(
-        lambda point: _residual(windows, used, point).ravel(),
+        lambda point: _residual(windows, weight, point).ravel(),
         np.clip(first, lowest + 1e-9, highest - 1e-9),
         bounds=(lowest, highest),
         x_scale=[0.01, 3e-4, 0.01],
@@ -219,7 +219,7 @@ def _fitted(windows: StartWindows, used: Flags, first: Array) -> Array:
     return np.asarray(found.x)
 
 
-def _residual(windows: StartWindows, used: Flags, point: Array) -> Array:
+def _residual(windows: StartWindows, weight: Array, point: Array) -> Array:
     """Return the misfit of the torque, less all linear columns, shape (starts, samples) [N·m]."""
     shift, smear, late = point
     time_constant = math.sqrt(max(smear, 0.0))
@@ -228,7 +228,13 @@ def _residual(windows: StartWindows, used: Flags, point: Array) -> Array:
     def logged(signals: Sequence[Array], extra: float = 0.0) -> Array:
         shape = (len(signals), *windows.torque.shape)
         rows = np.concatenate(signals)
-        delayed = responded(rows, windows.period, delay=delay + extra, time_constant=time_constant)
+        delayed = responded(
+            rows,
+            windows.period,
+            delay=delay + extra,
+            time_constant=time_constant,
+            stride=windows.stride,
+        )
         return delayed.reshape(shape)
 
     turned = () if windows.turned is None else (windows.turned,)
@@ -237,11 +243,11 @@ def _residual(windows: StartWindows, used: Flags, point: Array) -> Array:
     basis: list[Array] = []
     lines = 1 + len(turned)
     for column in (np.ones_like(windows.torque), later[0], *early[1:lines]):
-        rest = _without(column * used, basis)
+        rest = _without(column * weight, basis)
         size = np.sqrt(np.sum(np.square(rest), axis=1, keepdims=True))
         basis.append(np.divide(rest, size, out=np.zeros_like(rest), where=size > _NO_COLUMN))
-    misfit = _without((windows.torque - early[0]) * used, basis)
-    common = _without(np.concatenate([early[lines:], later[1:]]) * used, basis)
+    misfit = _without((windows.torque - early[0]) * weight, basis)
+    common = _without(np.concatenate([early[lines:], later[1:]]) * weight, basis)
     columns = common.reshape(len(common), -1).T
     columns = columns / np.maximum(np.linalg.norm(columns, axis=0), _NO_COLUMN)
     orthogonal, triangle = np.linalg.qr(columns)
@@ -256,17 +262,17 @@ def _without(column: Array, basis: list[Array]) -> Array:
     return column
 
 
-def _one_step(windows: StartWindows, used: Flags, point: Array) -> tuple[Array, Array, int]:
+def _one_step(windows: StartWindows, weight: Array, point: Array) -> tuple[Array, Array, int]:
     """Return the estimate after a step without bounds, its covariance, and degrees of freedom.
 
     Without its bound a smear that is not there comes out negative as often as positive.
     """
-    misfit = _residual(windows, used, point)
+    misfit = _residual(windows, weight, point)
     slopes = []
     for place, step in enumerate(_STEPS):
         moved = point.copy()
         moved[place] += step
-        slopes.append((_residual(windows, used, moved) - misfit) / step)
+        slopes.append((_residual(windows, weight, moved) - misfit) / step)
     jacobian = np.stack(slopes, axis=2)
     scale = np.maximum(np.sqrt(np.sum(np.square(jacobian), axis=(0, 1))), _NO_COLUMN)
     jacobian /= scale
