@@ -21,7 +21,10 @@ from frictioncli.model.paper_method import consecutive_fit
 from frictioncli.model.settings import LEAST_OPPOSING, LEAST_PAIRS, FitSettings, not_opposing
 from frictioncli.wording import count_text, quantity_text
 
-_LATE = f"the torque in these logs lags the position by {{delay}}; {FREED}"
+_LATE = (
+    f"the torque in these logs lags the position by {{delay}}, by the pairs alone; {FREED}"
+    " ('frictioncli diagnose' uses starts of moves, too, and may state another delay)"
+)
 
 _MAY_BE_LATE = (
     "these moves do not tell whether the torque lags the position; the intervals allow for a delay"

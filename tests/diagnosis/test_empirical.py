@@ -299,6 +299,12 @@ def test_a_bump_in_a_late_torque_is_described():
         f" {part.form.shape['centre']:.1f} deg, {part.form.shape['width']:.1f} deg wide (standard"
         f" deviation), in a torque that is logged {1e3 * part.form.shape['lag']:.0f} ms late"
     )
+    # beside another delay a reader must learn which is which
+    both_stated = described(part.form, "N·m", delay_is_stated=True)
+    assert both_stated.startswith(described(part.form, "N·m"))
+    assert "by this form alone" in both_stated
+    at_once = replace(part.form, shape=part.form.shape | {"lag": 0.0})
+    assert described(at_once, "N·m", delay_is_stated=True) == described(at_once, "N·m")
 
 
 @pytest.mark.parametrize(

@@ -195,6 +195,42 @@ def test_a_response_is_that_of_differential_equation_and_shift(delay, time_const
     assert found == pytest.approx(expected, abs=4e-4)
 
 
+@pytest.mark.parametrize("time_constant", [0.002, 0.02])
+@pytest.mark.parametrize("delay", [0.0, 0.0062])
+def test_every_fourth_sample_of_a_smooth_signal_tells_its_response(delay, time_constant):
+    """Of 1 kHz: a cosine that begins at a crest, behind a differential equation and a shift."""
+    frequency = 30.0
+    time = 0.004 * np.arange(200)
+    since = np.maximum(time - 0.2, 0.0)
+    found = responded(
+        1 - np.cos(frequency * since)[np.newaxis],
+        0.001,
+        delay=delay,
+        time_constant=time_constant,
+        stride=4,
+    )[0]
+    since = np.maximum(time - 0.2 - delay, 0.0)
+    turn = frequency * time_constant
+    wave = (np.cos(frequency * since) + turn * np.sin(frequency * since)) / (1 + turn**2)
+    start = np.exp(-since / time_constant) * (1 - 1 / (1 + turn**2))
+    # linear between these samples it would miss by 0.0012
+    assert found == pytest.approx(1 - wave - start, abs=3e-4)
+
+
+@pytest.mark.long
+def test_delay_and_filter_of_a_log_of_1_khz_are_those_of_its_every_fourth_sample():
+    """The motion is smooth enough for either; at 1 kHz four times as many samples are logged."""
+    fast, slow = (
+        timing(logged(delay=0.006, time_constant=0.01, every=every, noise=noise))
+        for every, noise in ((1, 0.3), (4, 0.15))
+    )
+    error = (fast.shift.high - fast.shift.low) / 4
+    assert fast.starts == slow.starts
+    assert fast.shift.low < 0.016 < fast.shift.high
+    assert fast.shift.value == pytest.approx(slow.shift.value, abs=2 * error)
+    assert fast.time_constant.low < 0.01 < fast.time_constant.high
+
+
 @pytest.mark.skipif(not REAL.is_dir(), reason=f"no real logs beside the project: {REAL}")
 def test_what_is_planted_into_a_real_log_is_found(tmp_path):
     """KUKA KR3: seven moves at 46 to 320 deg/s, 12 ms."""

@@ -158,7 +158,9 @@ def term_record(
     )
 
 
-def gain_record(found: Empirical, units: TorqueUnits) -> EmpiricalGainRecord:
+def gain_record(
+    found: Empirical, units: TorqueUnits, *, delay_is_stated: bool = False
+) -> EmpiricalGainRecord:
     """Return what an empirical term gains as ``diagnosis.json`` has it.
 
     Parameters
@@ -167,6 +169,8 @@ def gain_record(found: Empirical, units: TorqueUnits) -> EmpiricalGainRecord:
         The term.
     units : TorqueUnits
         Units of torque and of load.
+    delay_is_stated : bool, optional
+        Whether the delay of the log is stated besides, which is not that of a form.
     """
     gain = found.gain
     return EmpiricalGainRecord(
@@ -179,11 +183,11 @@ def gain_record(found: Empirical, units: TorqueUnits) -> EmpiricalGainRecord:
         ci95=gain.interval,
         noise_floor=gain.floor,
         ranges=found.term.ranges,
-        parts=tuple(_located_record(one, units) for one in found.parts),
+        parts=tuple(_located_record(one, units, delay_is_stated) for one in found.parts),
     )
 
 
-def _located_record(part: Located, units: TorqueUnits) -> LocatedRecord:
+def _located_record(part: Located, units: TorqueUnits, delay_is_stated: bool) -> LocatedRecord:
     form = part.form
     return LocatedRecord(
         axes=part.axes,
@@ -191,6 +195,8 @@ def _located_record(part: Located, units: TorqueUnits) -> LocatedRecord:
         size=part.size,
         ci95=part.interval,
         share=part.share,
-        description=None if form is None else described(form, *units),
+        description=None
+        if form is None
+        else described(form, *units, delay_is_stated=delay_is_stated),
         formula=None if form is None else formula_with_numbers(form),
     )

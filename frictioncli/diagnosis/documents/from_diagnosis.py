@@ -15,7 +15,7 @@ from frictioncli.diagnosis.documents.document import (
     GainRecord,
     SimulationRecord,
 )
-from frictioncli.diagnosis.documents.empirical_record import gain_record, term_record
+from frictioncli.diagnosis.documents.empirical_record import term_record
 from frictioncli.diagnosis.documents.extended_document import (
     EffectRecord,
     ExtendedDocument,
@@ -31,6 +31,7 @@ from frictioncli.diagnosis.documents.parameters import (
 from frictioncli.diagnosis.documents.ramps_record import ramps_record
 from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.documents.structure_record import (
+    empirical_record,
     known_interval,
     structure_record,
     unnamed_record,
@@ -93,9 +94,7 @@ def diagnosis_document(
             ci95=gain.interval,
             noise_floor=gain.floor,
         ),
-        empirical=None
-        if diagnosis.empirical is None
-        else gain_record(diagnosis.empirical, TorqueUnits.of_diagnosis(diagnosis)),
+        empirical=empirical_record(diagnosis),
         remainder=remainder_record(diagnosis),
         detectable=detectable,
         undetectable=undetectable_reasons(diagnosis, settings, detectable),

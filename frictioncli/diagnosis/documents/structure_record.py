@@ -4,12 +4,17 @@ import numpy as np
 
 from frictioncli.diagnosis.diagnose import Diagnosis
 from frictioncli.diagnosis.documents.document import CauseRecord, StructureRecord
-from frictioncli.diagnosis.documents.empirical_record import LocatedRecord, gain_record
+from frictioncli.diagnosis.documents.empirical_record import (
+    EmpiricalGainRecord,
+    LocatedRecord,
+    gain_record,
+)
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.empirical.describe import experiment
 from frictioncli.diagnosis.search.axis_columns import friction_tells_load, load_over_angle
 from frictioncli.diagnosis.search.confounded import has_temperature
 from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.timing_causes import DELAY
 
 
 def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
@@ -87,10 +92,24 @@ def known_interval(interval: tuple[float, float]) -> tuple[float, float] | None:
     return (low, high) if np.isfinite(low) and np.isfinite(high) else None
 
 
-def _forms(diagnosis: Diagnosis) -> tuple[LocatedRecord, ...]:
+def empirical_record(diagnosis: Diagnosis) -> EmpiricalGainRecord | None:
+    """Return the empirical term of a diagnosis, with its forms in words; None without one.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        The diagnosis.
+    """
     if diagnosis.empirical is None:
-        return ()
-    return gain_record(diagnosis.empirical, TorqueUnits.of_diagnosis(diagnosis)).forms
+        return None
+    stated = any(one.fit.effect.name == DELAY for one in diagnosis.causes)
+    units = TorqueUnits.of_diagnosis(diagnosis)
+    return gain_record(diagnosis.empirical, units, delay_is_stated=stated)
+
+
+def _forms(diagnosis: Diagnosis) -> tuple[LocatedRecord, ...]:
+    found = empirical_record(diagnosis)
+    return () if found is None else found.forms
 
 
 def _further_axes(structure: Structure, forms: tuple[LocatedRecord, ...]) -> tuple[str, ...]:

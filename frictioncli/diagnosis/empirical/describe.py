@@ -23,7 +23,15 @@ _LEAST_LAG = 0.001
 """Delay from which on it is said. [s]"""
 
 
-def described(form: FormFunction, unit: str, load_unit: str = "N·m") -> str:
+_OWN_DELAY = (
+    " (by this form alone, without an interval; the delay or filter of the log is stated apart)"
+)
+"""What is said of the delay of a form where the delay of the log is stated, too."""
+
+
+def described(
+    form: FormFunction, unit: str, load_unit: str = "N·m", *, delay_is_stated: bool = False
+) -> str:
     """Return a form in words, as "a bump of friction of 5.5 N·m at 86 deg, 6.8 deg wide".
 
     The width is the standard deviation of a peak that falls like a normal distribution.
@@ -34,6 +42,8 @@ def described(form: FormFunction, unit: str, load_unit: str = "N·m") -> str:
         The form with its parameters.
     unit, load_unit : str
         Units of torque and of load.
+    delay_is_stated : bool, optional
+        Whether the delay of the log is stated besides, which is not that of a form.
 
     Examples
     --------
@@ -50,7 +60,12 @@ def described(form: FormFunction, unit: str, load_unit: str = "N·m") -> str:
     'a dent of friction of 1.4 N·m at 45.3 °C, 1.9 °C wide (standard deviation)'
     """
     since = f", since run {form.since}" if form.since else ""
-    return _WORDS[form.kind](form, unit).replace(_LOAD_UNIT, load_unit) + since
+    own = _OWN_DELAY if delay_is_stated and _is_late(form) else ""
+    return _WORDS[form.kind](form, unit).replace(_LOAD_UNIT, load_unit) + own + since
+
+
+def _is_late(form: FormFunction) -> bool:
+    return form.shape.get("lag", 0.0) > _LEAST_LAG
 
 
 def formula_with_numbers(form: FormFunction) -> str:
@@ -155,7 +170,7 @@ def _peak(form: FormFunction, unit: str) -> str:
     else:
         wide = f"{number_text(shape['width'], 2)} {_UNITS[axis]} wide (standard deviation)"
     text = f"a {what} of {_of(form)} of {_size(height, unit)} {place}, {wide}"
-    if shape.get("lag", 0.0) > _LEAST_LAG:
+    if _is_late(form):
         text += f", in a torque that is logged {number_text(1e3 * shape['lag'], 2)} ms late"
     return text
 

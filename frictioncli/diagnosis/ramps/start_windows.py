@@ -2,8 +2,8 @@ r"""Starts of moves on one grid of samples, and what the torque consists of ther
 
 Every signal is smoothed as the acceleration is, twice by the slope of a local line: a shift between
 torque and acceleration is then no work of the smoothing. Positions are known at the samples only;
-the smoothed value of a signal *x* is the slope of its integral along a cubic spline. Smoothed signals
-vary over some hundredths of a second, so that of a fast log every few samples tell all of it.
+the smoothed value of a signal *x* is the slope of its integral along a cubic spline. Of smoothed
+signals every few samples of a fast log tell all.
 """
 
 from collections.abc import Sequence
@@ -29,9 +29,8 @@ _HALF_WINDOW = 0.015
 """Half of the time over which position and velocity are differentiated. [s]"""
 
 _INTERVAL = 0.004
-"""Time between samples of smoothed signals up to which nothing is lost. [s]
-
-At half of 1/(4 ms) the smoothing leaves a thousandth of a signal."""
+"""Time between samples up to which nothing of smoothed signals is lost: of half of that frequency
+smoothing leaves less than a thousandth. [s]"""
 
 _WHOLE = 0.02
 """Share of a sampling period by which a number of them may miss that time."""
@@ -64,8 +63,6 @@ _SAME_SPEED = 0.03
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StartWindows:
     """Signals at the starts of moves, a row per start and a column per sample.
-
-    Of a fast log every few samples stand for all.
 
     Attributes
     ----------
@@ -137,9 +134,8 @@ class StartWindows:
     def weights(self, delay: float) -> Array:
         """Return square roots of the weights of the samples, shape (starts, samples) [-].
 
-        A sample has the share of the log about it that the model describes, or 0. With whole ones
-        alone, the delay would depend on which samples stand for all: most of the misfit is where
-        that share begins.
+        A sample has the share of the log about it that the model describes: where that begins, most
+        of the misfit is.
 
         Parameters
         ----------
@@ -149,8 +145,9 @@ class StartWindows:
         from scipy.ndimage import correlate1d  # slow to import, and only needed with ramps
 
         described = self.moving & (self.since > _ONSET + max(delay, 0.0))
-        # as if squares were linear between samples
-        near = 1.0 - np.abs(np.arange(1 - self.stride, self.stride)) / self.stride
+        # sampling periods nearer to this sample than to the next one; half of that halfway
+        near = np.ones(2 * (self.stride // 2) + 1)
+        near[[0, -1]] = 1.0 if self.stride % 2 else 0.5
         share = correlate1d(described.astype(float), near / self.stride, axis=1, mode="constant")
         return np.sqrt(share[:, _standing_for_all(self.since, self.stride)])
 
