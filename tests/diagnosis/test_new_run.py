@@ -16,6 +16,8 @@ from frictioncli.effects.history_text import history_text
 from frictioncli.model.noise import Noise
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.simulation.changed_table import hours, with_friction_step, with_payload
+from tests.diagnosis.wave_effects import A, B
+from tests.diagnosis.wave_effects import effect as waves
 from tests.simulation.torque_table import simulate_torques
 
 NOISE = Noise(point=0.3, pair=0.15, drift=0.15, drift_time=1500.0)
@@ -205,3 +207,28 @@ def test_a_run_in_which_next_to_nothing_is_left_does_not_contradict_a_cause(torq
     _, found = asked(table, fit_of("run_in", 12.0, distance=10_000.0))
     assert found.amplitude < -10.0
     assert found.holds is None
+
+
+def test_a_cause_whose_torque_the_runs_seen_do_not_determine_is_not_absent(torques):
+    """Two waves are nearly the same on the first day, and opposite on the second.
+
+    Which of both it is, the first day hardly tells, so that nothing is known of the second; where
+    they differ on the first, it is.
+    """
+
+    def second(rows):
+        turned = np.where(np.asarray(rows.run) == np.max(np.asarray(rows.run)), -1.0, 1.0)
+        return turned * A(rows) + apart * B(rows)
+
+    table = torques.assign(
+        friction_torque=torques["friction_torque"] + 0.3 * A(torques),
+    )
+    held = []
+    for apart in (0.01, 1.0):
+        effect = waves("two", [(1.0, A)], [(1.0, second)])
+        problem, _ = build_problems(table, "motor", "day2")
+        fit = EffectFit(effect, {}, np.array([0.0, 0.3]), np.eye(2), 100.0)
+        held.append(asked(table, fit)[1])
+    assert held[0].holds is None
+    assert held[1].holds is True
+    assert held[1].amplitude == pytest.approx(1.0, abs=3 * held[1].error)

@@ -8,7 +8,8 @@ by the torque :math:`u` that the cause would add there, times an amplitude *a*,
 by generalised least squares, with the columns *X* of base and other causes, the covariance
 :math:`\Sigma` of their estimates from the runs seen, and the noise *V* of the new run, drift
 included: a day that is a little off as a whole is no evidence. An amplitude of 1 is what the runs
-seen predict, 0 is absence.
+seen predict, 0 is absence. Where the cause is there, its torque is off by the errors of its own
+coefficients and shape: it counts as absent only if it is so with these errors in :math:`\delta`.
 
 When a change was there is an input of the new run, as its temperature is, and no parameter of the
 joint. Where the history that the runs seen suggest does not fit, it is estimated on the new run.
@@ -131,16 +132,22 @@ def new_run_test(
     residual = NewRunResidual.of(fit, problem, new, weighted_fit, noises, others)
     if fit.effect.moments is not None:
         return _test_of_change(residual, fit.shape)
-    return _tested(residual.with_own_noise(fit.shape), fit.shape)
+    # where it is there, its torque is as far off as its own errors allow
+    doubtful = NewRunResidual.of(fit, problem, new, weighted_fit, noises, others, own_errors=True)
+    return _tested(residual.with_own_noise(fit.shape), fit.shape, doubtful)
 
 
-def _tested(residual: NewRunResidual, shape: Shape) -> NewRunTest:
-    """Return the test of a cause at one shape."""
+def _tested(
+    residual: NewRunResidual, shape: Shape, doubtful: NewRunResidual | None = None
+) -> NewRunTest:
+    """Return the test of a cause at one shape; it is absent only where its own errors allow it."""
     amplitude, error = residual.amplitude(shape)
     holds = None
     if amplitude > _SIGNIFICANT * error and _ALIKE[0] <= amplitude <= _ALIKE[1]:
         holds = True
     elif error < _SHOWN and amplitude + _TWO_SIDED * error < _ABSENT:
+        if doubtful is not None:
+            return _tested(doubtful.with_own_noise(shape), shape)
         holds = False
     return NewRunTest(holds=holds, amplitude=amplitude, error=error, shape=shape)
 

@@ -20,7 +20,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import base_rows
-from frictioncli.diagnosis.fit.extension import misfits, refit
+from frictioncli.diagnosis.fit.extension import misfits, refit, with_shapes
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
 from frictioncli.effects.base import Effect
@@ -58,6 +58,8 @@ class NewRunResidual:
         weighted_fit: WeightedFit,
         noises: tuple[Noise, Noise],
         others: Sequence[EffectFit],
+        *,
+        own_errors: bool = False,
     ) -> "NewRunResidual":
         """Return the residual of a run.
 
@@ -73,12 +75,19 @@ class NewRunResidual:
             Noise of friction and load there.
         others : sequence of EffectFit
             The other causes.
+        own_errors : bool, optional
+            Whether the errors of the cause's own coefficients and shape count, too: where it is
+            there, its torque is that much off.
         """
         fitted = refit(problem, weighted_fit, [*others, fit])
         *rest, own = fitted.effects
-        kept = slice(0, -len(own.coefficients))
-        covariance = weighted_fit.error_covariance(*model_columns(problem, fitted.effects))
-        root = square_root(covariance[kept, kept])
+        columns_of = with_shapes if own_errors else model_columns
+        covariance = weighted_fit.error_covariance(*columns_of(problem, fitted.effects))
+        ordered = [*rest, own]
+        if not own_errors:
+            kept = slice(0, -len(own.coefficients))
+            ordered, covariance = rest, covariance[kept, kept]
+        root = square_root(covariance)
         # a change is evaluated where it is there throughout, and multiplied by its history later
         shape = history([(0.0, 1.0)]) if fit.effect.moments is not None else fit.shape
         extra = (new.temperature_variance, np.zeros_like(new.layout.time))
@@ -89,7 +98,7 @@ class NewRunResidual:
                 extra,
                 new.basis(fit.effect, shape),
                 misfits(new, replace(fitted, effects=tuple(rest))),
-                model_columns(new, rest),
+                columns_of(new, ordered),
                 strict=True,
             )
         )
