@@ -134,3 +134,58 @@ def test_a_motor_that_warms_in_a_pause_tells_of_way_at_the_highest_speed(warm, w
     layout = pairs([0, 302, 312, 0, 10], [0, 0, 0, 1, 1])
     found = travelled(layout, np.array([*warm, 20.0, 20.0]))
     assert found.tolist() == [*way, 0, 180]
+
+
+COOLING = 1 / 2400.0
+"""Rate at which the motor of the joint below loses its excess over ambient. [1/s]"""
+
+HEATED, RESTING, HALF = [1.0] * 20, [0.0] * 16, [0.5] * 16
+
+
+def worked(share, *, pause=400.0, ambient=22.0, hottest=36.0):
+    """Return estimated and true travel, relative to 1 h at 20 deg/s, of a joint that works so.
+
+    Its motor follows dT/dt = k (share * hottest - (T - ambient)); pairs take next to no time.
+    """
+    above = [0.0]
+    for one in share:
+        above.append(one * hottest + (above[-1] - one * hottest) * np.exp(-COOLING * pause))
+    count = len(above)
+    layout = pairs(pause * np.arange(count))
+    between = pauses_of(layout, np.zeros(count))
+    found = travel_of(layout, np.zeros(count), between, ambient + np.array(above))
+    return found / 72_000.0, np.append(0.0, np.cumsum(share)) * pause / 3600.0
+
+
+@pytest.mark.parametrize(
+    ("share", "error"),
+    [
+        (HEATED + RESTING, 0.05),
+        (HEATED + HALF + RESTING, 0.1),
+        (HEATED + RESTING[:8] + HEATED + RESTING, 0.05),
+        (HEATED * 2, 0.05),
+        (HEATED[:3] + RESTING * 2, 0.05),
+    ],
+)
+def test_a_motor_that_stays_warm_moves(share, error):
+    """It must be heated against its cooling, at the rate at which it cools at rest."""
+    found, true = worked(share)
+    assert found == pytest.approx(true, abs=error * true[-1])
+
+
+def test_half_the_work_from_the_start_is_taken_for_motion_throughout():
+    """Temperature tells relative heat only: travel then keeps its form, at another scale."""
+    found, true = worked(HALF + RESTING)
+    assert found == pytest.approx(2 * true, abs=0.1 * true[-1])
+
+
+@pytest.mark.parametrize("ambient", [-10.0, 5.0, 30.0])
+def test_where_it_is_warm_does_not_matter(ambient):
+    at_home, _ = worked(HEATED + HALF + RESTING)
+    assert worked(HEATED + HALF + RESTING, ambient=ambient)[0] == pytest.approx(at_home)
+
+
+def test_a_motor_that_cools_all_day_has_not_moved():
+    above = 30.0 * np.exp(-COOLING * 400.0 * np.arange(21))
+    layout = pairs(400.0 * np.arange(21))
+    assert not travel_of(layout, np.zeros(21), pauses_of(layout, np.zeros(21)), above).any()

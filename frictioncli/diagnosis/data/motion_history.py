@@ -3,7 +3,8 @@
 import numpy as np
 import pandas as pd
 
-from frictioncli.arrays import Array, Flags
+from frictioncli.arrays import Array, Flags, Indices
+from frictioncli.diagnosis.data.heat_balance import heat_of
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.model.zero_load import PAIR_KEY
 
@@ -17,8 +18,8 @@ _WARMED = 0.2
 """A motor that is warmer by more than this after a pause has moved during it. [°C]"""
 
 _LEAST_RATE = 0.4
-"""Least rate of warming of a pause with motion throughout, relative to the median of the pauses
-that warmed the motor; a slower one had motion in a part of it only."""
+"""Least rate of warming of a pause that counts as motion, relative to the median of the pauses that
+warmed the motor."""
 
 
 def distance_of_pairs(rows: pd.DataFrame) -> Array:
@@ -92,9 +93,10 @@ def clock_of(layout: PairLayout) -> Array:
 def travel_of(layout: PairLayout, distance: Array, pause: Array, temperature: Array) -> Array:
     """Return the distance that a joint has travelled before each pair since its run's start [deg].
 
-    The log has the strokes of its pairs. Where the motor warmed during a pause, the joint is
-    assumed to have moved at the highest recorded speed, as in a heating programme. That distance
-    may be many times the recorded one, and runs a joint in as well.
+    The log has the strokes of its pairs. Where the motor was heated during a pause, the joint is
+    assumed to have moved at the highest recorded speed, as in a heating programme, for as much of
+    the pause as the heat tells. That distance may be many times the recorded one, and runs a joint
+    in as well.
 
     Parameters
     ----------
@@ -107,12 +109,50 @@ def travel_of(layout: PairLayout, distance: Array, pause: Array, temperature: Ar
     temperature : ndarray, shape (pairs,)
         Motor temperature of each pair; NaN where unknown: pauses are then rests. [°C]
     """
-    rise = np.diff(temperature)
-    warmed = (pause > _IDLE) & (rise > _WARMED) & (np.diff(layout.run) == 0)
-    moved = moved_throughout(rise, pause, warmed)
-    unrecorded = np.where(moved, pause * layout.speed.max(), 0.0)
+    unrecorded = share_moved(layout, pause, temperature) * pause * layout.speed.max()
     travel = np.append(0.0, np.cumsum(distance[:-1] + unrecorded))
     return travel - travel[np.searchsorted(layout.run, layout.run)]
+
+
+def share_moved(layout: PairLayout, pause: Array, temperature: Array) -> Array:
+    """Return the share of each pause in which the joint moved, as its motor's temperature tells.
+
+    Parameters
+    ----------
+    layout : PairLayout
+        The pairs.
+    pause : ndarray, shape (pairs - 1,)
+        Time between two. [s]
+    temperature : ndarray, shape (pairs,)
+        Motor temperature of each pair; NaN where unknown: pauses are then rests. [°C]
+
+    Returns
+    -------
+    ndarray, shape (pairs - 1,)
+        Heat of the pauses that warmed the motor, or kept it warm against its cooling, relative to
+        the median of those that warmed it; 1 at most, and 0 below 0.4. [-]
+    """
+    same = np.diff(layout.run) == 0
+    rise, seconds = np.diff(temperature), np.where(same, np.diff(layout.time), 0.0)
+    ambient = _lowest(temperature, layout.run)[:-1]
+    above = (temperature[:-1] + temperature[1:]) / 2 - ambient
+    warmed = same & (pause > _IDLE) & (rise > _WARMED)
+    if not warmed.any():
+        return np.zeros_like(rise)
+    # in a short pause the heat of the pairs about it, and steps of the register, count for more
+    long = same & (pause > _SERIES_GAP) & np.isfinite(rise)
+    heat = heat_of(rise, seconds, above, long, _WARMED)
+    heated = warmed | (long & (heat > _WARMED))
+    rate = np.divide(heat, pause, out=np.zeros_like(rise), where=heated)
+    share = rate / float(np.median(rate[warmed]))
+    return np.where(share >= _LEAST_RATE, np.minimum(share, 1.0), 0.0)
+
+
+def _lowest(temperature: Array, run: Indices) -> Array:
+    """Return the lowest temperature of the run of each pair [°C]."""
+    lowest = np.full(int(run.max()) + 1, np.inf)
+    np.fmin.at(lowest, run, temperature)
+    return lowest[run]
 
 
 def moved_throughout(rise: Array, seconds: Array, warmed: Flags) -> Flags:
