@@ -24,6 +24,7 @@ from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidenc
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.effect_size import elsewhere, left_size, sizes_of
+from frictioncli.diagnosis.search.guessed_travel import likelier_travel
 from frictioncli.diagnosis.search.margin import channel_margin, strength
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.possible import beyond_bounds
@@ -294,10 +295,11 @@ def _cause(
     own = tests[one.effect.name]
     factor = own.refined_log_bayes_factor(fit)
     possible = {name: test for name, test in tests.items() if name not in impossible}
+    possible, variants = likelier_travel(step, possible, factor)
     sizes = sizes_of(step.precomputed, fit)
     left_share = sizes["visible"] / max(sizes["size"], 1e-300)
     share = posterior_probabilities(
-        rival_log_bayes_factors(step, fit, factor, possible, left_share)
+        rival_log_bayes_factors(step, fit, factor, possible, left_share, {**BY_NAME, **variants})
     )
     return Cause(
         fit=fit,

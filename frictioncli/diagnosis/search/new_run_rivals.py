@@ -15,6 +15,7 @@ from frictioncli.diagnosis.search.cause_selection import (
     missed_of_new_run,
     predicts_new_run,
 )
+from frictioncli.diagnosis.search.guessed_travel import variants
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
@@ -96,10 +97,9 @@ def _judged(cause: Cause, causes: Sequence[Cause], found: SearchResult, new: Pro
         return missed_of_new_run([*others, fit], found.step.problem, new, weighted_fit)
 
     most = WORSE * missed(cause.fit)
-    refuted = {
-        one.name
-        for one, fit in zip(rivals, _fitted(rivals, others, found), strict=True)
-        if missed(fit) > most
+    fits = _fitted(rivals, others, found)
+    refuted = {one.name for one in rivals} - {
+        fit.effect.name for fit in fits if missed(fit) <= most
     }
     if not refuted:
         return cause
@@ -113,12 +113,19 @@ def _judged(cause: Cause, causes: Sequence[Cause], found: SearchResult, new: Pro
 
 
 def _fitted(
-    rivals: Sequence[Effect], others: Sequence[EffectFit], found: SearchResult
+    rivals: Sequence[Effect],
+    others: Sequence[EffectFit],
+    found: SearchResult,
 ) -> list[EffectFit]:
-    """Return each rival, fitted to the runs seen beside the other causes."""
+    """Return each variant of each rival, fitted to the runs seen beside the other causes."""
     beside = [one for one in others if not one.effect.measurement]
     step = Step.of(found.step.precomputed, beside)
     wanted = {one.name for one in rivals}
     skipped = {one.name for one in found.catalogue.hypotheses} - wanted
     tests = step.tested(found.catalogue, skipped)
-    return [step.refined(tests[one.name].effect_fit(one)) for one in rivals]
+    table = step.problem.all_runs
+    return [
+        step.refined(tests[one.name].effect_fit(variant))
+        for one in rivals
+        for variant in variants(one, table)
+    ]

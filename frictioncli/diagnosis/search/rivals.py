@@ -7,6 +7,7 @@ from frictioncli.diagnosis.noise.significance import credible_set, posterior_pro
 from frictioncli.diagnosis.search.possible import lies_on_bound
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME
+from frictioncli.effects.base import Effect
 
 CLEARLY = 3.0
 """Log Bayes factor by which another effect must fit better to replace an accepted one."""
@@ -59,6 +60,7 @@ def rival_log_bayes_factors(
     factor: float,
     tests: Mapping[str, HypothesisTest],
     left_share: float = 1.0,
+    effects: Mapping[str, Effect] = BY_NAME,
 ) -> dict[str, float]:
     """Return the log Bayes factors of a cause and of the effects that may stand for it, by name.
 
@@ -81,6 +83,8 @@ def rival_log_bayes_factors(
         Tests of all effects there.
     left_share : float, optional
         Share of its RMS that the base leaves of the cause.
+    effects : mapping of str to Effect, optional
+        The effects by name; by default those of the catalogue.
     """
     missed = evidence_missed(own.statistic, left_share)
     near = {
@@ -102,7 +106,7 @@ def rival_log_bayes_factors(
             return share
         judged.update(doubtful)
         for name in doubtful:
-            if not _explains(step, own, tests[name]):
+            if not _explains(step, own, tests[name].effect_fit(effects[name])):
                 del share[name]
 
 
@@ -119,8 +123,8 @@ def evidence_missed(statistic: float, left_share: float) -> float:
     return min((_FORM / max(left_share, _FORM)) ** 2, _MOST_MISSED) * statistic / 2
 
 
-def _explains(step: Step, own: EffectFit, rival: HypothesisTest) -> bool:
+def _explains(step: Step, own: EffectFit, rival: EffectFit) -> bool:
     """Return whether a cause is hardly needed beside a rival."""
-    instead = step.refined(rival.effect_fit(BY_NAME[rival.name]))
+    instead = step.refined(rival)
     beside = Step.of(step.precomputed, [*step.accepted, instead])
     return beside.fitted(own.effect, own.shape).statistic < _KEPT * own.statistic
