@@ -34,7 +34,7 @@ def heat_of(rise: Array, seconds: Array, above: Array, long: Flags, seen: float)
     Returns
     -------
     ndarray, shape (intervals,)
-        Rise plus cooling, for long intervals; the rise for others. [°C]
+        Rise plus cooling. [°C]
 
     Examples
     --------
@@ -47,7 +47,7 @@ def heat_of(rise: Array, seconds: Array, above: Array, long: Flags, seen: float)
     array([7., 3., 0.])
     """
     cooling = _rate_of_cooling(rise, seconds, above, long, seen)
-    return np.where(long, rise + cooling * above * seconds, rise)
+    return rise + cooling * above * seconds
 
 
 def _rate_of_cooling(rise: Array, seconds: Array, above: Array, long: Flags, seen: float) -> float:

@@ -139,7 +139,7 @@ def share_moved(layout: PairLayout, pause: Array, temperature: Array) -> Array:
     warmed = same & (pause > _IDLE) & (rise > _WARMED)
     if not warmed.any():
         return np.zeros_like(rise)
-    # in a short pause the heat of the pairs about it, and steps of the register, count for more
+    # after a short pause the heat of the pairs about it may be what keeps the motor warm
     long = same & (pause > _SERIES_GAP) & np.isfinite(rise)
     heat = heat_of(rise, seconds, above, long, _WARMED)
     heated = warmed | (long & (heat > _WARMED))
