@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from frictioncli.effects import BY_NAME
+from frictioncli.effects.run_in import OF_LOGGED, logged_travel
 from tests.effects.tables import friction, load, small
 
 
@@ -189,6 +190,20 @@ def test_run_in_falls_with_the_way_of_all_days():
     table = small(travel=[0.0, 20_000.0, 0.0], run=[0, 0, 1])
     found = friction("run_in", table, distance=10_000.0)
     assert found == pytest.approx(np.array([[1.0], [np.exp(-2)], [np.exp(-2)]]))
+
+
+def test_run_in_of_recordings_alone_falls_with_the_strokes_of_the_pairs():
+    """Two pairs of 90 deg and one of 45 deg, there and back; a day between the last two."""
+    table = small(
+        pair=[0, 0, 1, 1, 2, 2],
+        run=[0, 0, 0, 0, 1, 1],
+        position=[0.0, 90.0, 0.0, 90.0, 0.0, 45.0],
+        travel=[0.0, 0.0, 9e4, 9e4, 0.0, 0.0],
+    )
+    assert logged_travel(table).tolist() == [0.0, 0.0, 180.0, 180.0, 0.0, 0.0]
+    found = np.ravel(OF_LOGGED.evaluate(table, {"distance": 180.0}).friction)
+    # what a run covers counts up to its last pair
+    assert found == pytest.approx(np.exp([0, 0, -1, -1, -1, -1]))
 
 
 def test_rest_recovery_decays_with_every_pair_and_recovers_at_rest():

@@ -21,6 +21,10 @@ _LEAST_RATE = 0.4
 """Least rate of warming of a pause that counts as motion, relative to the median of the pauses that
 warmed the motor."""
 
+_LEAST_SHARE = 0.25
+"""Least heat of a pause that counts as motion, relative to the same median: midway between rest and
+half the work."""
+
 
 def distance_of_pairs(rows: pd.DataFrame) -> Array:
     """Return the distance of each pair, there and back over its angles, shape (pairs,) [deg].
@@ -130,7 +134,7 @@ def share_moved(layout: PairLayout, pause: Array, temperature: Array) -> Array:
     -------
     ndarray, shape (pairs - 1,)
         Heat of the pauses that warmed the motor, or kept it warm against its cooling, relative to
-        the median of those that warmed it; 1 at most, and 0 below 0.4. [-]
+        the median of those that warmed it; 1 at most, and 0 below a quarter. [-]
     """
     same = np.diff(layout.run) == 0
     rise, seconds = np.diff(temperature), np.where(same, np.diff(layout.time), 0.0)
@@ -145,7 +149,7 @@ def share_moved(layout: PairLayout, pause: Array, temperature: Array) -> Array:
     heated = warmed | (long & (heat > _WARMED))
     rate = np.divide(heat, pause, out=np.zeros_like(rise), where=heated)
     share = rate / float(np.median(rate[warmed]))
-    return np.where(share >= _LEAST_RATE, np.minimum(share, 1.0), 0.0)
+    return np.where(share >= _LEAST_SHARE, np.minimum(share, 1.0), 0.0)
 
 
 def _lowest(temperature: Array, run: Indices) -> Array:
