@@ -299,7 +299,7 @@ def _cause(
     sizes = sizes_of(step.precomputed, fit)
     left_share = sizes["visible"] / max(sizes["size"], 1e-300)
     share = posterior_probabilities(
-        rival_log_bayes_factors(step, fit, factor, possible, left_share, {**BY_NAME, **variants})
+        rival_log_bayes_factors(step, fit, factor, possible, left_share, variants)
     )
     return Cause(
         fit=fit,

@@ -1,6 +1,7 @@
 """Rivals of a cause: effects that explain what it explains, and the likeliest of them."""
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest
 from frictioncli.diagnosis.noise.significance import credible_set, posterior_probabilities
@@ -60,7 +61,7 @@ def rival_log_bayes_factors(
     factor: float,
     tests: Mapping[str, HypothesisTest],
     left_share: float = 1.0,
-    effects: Mapping[str, Effect] = BY_NAME,
+    variants: Mapping[str, Effect] = MappingProxyType({}),
 ) -> dict[str, float]:
     """Return the log Bayes factors of a cause and of the effects that may stand for it, by name.
 
@@ -83,8 +84,8 @@ def rival_log_bayes_factors(
         Tests of all effects there.
     left_share : float, optional
         Share of its RMS that the base leaves of the cause.
-    effects : mapping of str to Effect, optional
-        The effects by name; by default those of the catalogue.
+    variants : mapping of str to Effect, optional
+        Effects by name that are not those of the catalogue.
     """
     missed = evidence_missed(own.statistic, left_share)
     near = {
@@ -106,7 +107,9 @@ def rival_log_bayes_factors(
             return share
         judged.update(doubtful)
         for name in doubtful:
-            if not _explains(step, own, tests[name].effect_fit(effects[name])):
+            if not _explains(
+                step, own, tests[name].effect_fit(variants.get(name) or BY_NAME[name])
+            ):
                 del share[name]
 
 
