@@ -1,6 +1,7 @@
 """Causes on a run that was kept out: there, not there, or not to be told; and when changes were."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -15,9 +16,9 @@ from frictioncli.effects.history import history, presence, stretches
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.noise import Noise
 from frictioncli.simulator.settings import SynthesisSettings
-from tests.simulation.changed_table import hours, with_friction_step, with_payload
 from tests.diagnosis.wave_effects import A, B
 from tests.diagnosis.wave_effects import effect as waves
+from tests.simulation.changed_table import hours, with_friction_step, with_payload
 from tests.simulation.torque_table import simulate_torques
 
 NOISE = Noise(point=0.3, pair=0.15, drift=0.15, drift_time=1500.0)
@@ -216,8 +217,8 @@ def test_a_cause_whose_torque_the_runs_seen_do_not_determine_is_not_absent(torqu
     they differ on the first, it is.
     """
 
-    def second(rows):
-        turned = np.where(np.asarray(rows.run) == np.max(np.asarray(rows.run)), -1.0, 1.0)
+    def second(rows, apart):
+        turned = np.where(rows.run == rows.run.max(), -1.0, 1.0)
         return turned * A(rows) + apart * B(rows)
 
     table = torques.assign(
@@ -225,8 +226,7 @@ def test_a_cause_whose_torque_the_runs_seen_do_not_determine_is_not_absent(torqu
     )
     held = []
     for apart in (0.01, 1.0):
-        effect = waves("two", [(1.0, A)], [(1.0, second)])
-        problem, _ = build_problems(table, "motor", "day2")
+        effect = waves("two", [(1.0, A)], [(1.0, partial(second, apart=apart))])
         fit = EffectFit(effect, {}, np.array([0.0, 0.3]), np.eye(2), 100.0)
         held.append(asked(table, fit)[1])
     assert held[0].holds is None
