@@ -132,22 +132,21 @@ def new_run_test(
     residual = NewRunResidual.of(fit, problem, new, weighted_fit, noises, others)
     if fit.effect.moments is not None:
         return _test_of_change(residual, fit.shape)
+    test = _tested(residual.with_own_noise(fit.shape), fit.shape)
+    if test.holds is not False:
+        return test
     # where it is there, its torque is as far off as its own errors allow
     doubtful = NewRunResidual.of(fit, problem, new, weighted_fit, noises, others, own_errors=True)
-    return _tested(residual.with_own_noise(fit.shape), fit.shape, doubtful)
+    return _tested(doubtful.with_own_noise(fit.shape), fit.shape)
 
 
-def _tested(
-    residual: NewRunResidual, shape: Shape, doubtful: NewRunResidual | None = None
-) -> NewRunTest:
-    """Return the test of a cause at one shape; it is absent only where its own errors allow it."""
+def _tested(residual: NewRunResidual, shape: Shape) -> NewRunTest:
+    """Return the test of a cause at one shape."""
     amplitude, error = residual.amplitude(shape)
     holds = None
     if amplitude > _SIGNIFICANT * error and _ALIKE[0] <= amplitude <= _ALIKE[1]:
         holds = True
     elif error < _SHOWN and amplitude + _TWO_SIDED * error < _ABSENT:
-        if doubtful is not None:
-            return _tested(doubtful.with_own_noise(shape), shape)
         holds = False
     return NewRunTest(holds=holds, amplitude=amplitude, error=error, shape=shape)
 
