@@ -58,15 +58,9 @@ def _rate_of_cooling(rise: Array, seconds: Array, above: Array, long: Flags, see
     cools = long & (rise < -seen) & (above > 0)
     if cools.any():
         lost = -rise[cools]
-        return _quantile(lost / (above * seconds)[cools], lost, _QUICK)
+        rates = lost / (above * seconds)[cools]
+        return float(np.quantile(rates, _QUICK, weights=lost, method="inverted_cdf"))
     if np.count_nonzero(long) < 3 or np.ptp(above[long]) <= 0:
         return 0.0
     slope = np.polyfit(above[long], rise[long] / seconds[long], 1, w=np.sqrt(seconds[long]))[0]
     return max(float(-slope), 0.0)
-
-
-def _quantile(values: Array, weights: Array, share: float) -> float:
-    """Return the value below which a share of the weights lies."""
-    order = np.argsort(values)
-    below = np.cumsum(weights[order])
-    return float(values[order][np.searchsorted(below, share * below[-1])])
