@@ -12,8 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.motion_history import moved_throughout
+from frictioncli.arrays import Array, Flags
 
 _TIME_CONSTANTS = np.geomspace(1200.0, 28_800.0, 25)
 """Time constants that are tried; a joint takes tens of minutes to hours. [s]"""
@@ -33,6 +32,10 @@ _LEAST_INTERVAL = 120.0
 
 _LEAST_DUTY = 0.5
 """Least share of recorded motion; below it, a warming motor indicates unrecorded motion."""
+
+_LEAST_RATE = 0.4
+"""Least rate of warming of a pause that counts as motion, relative to the median of the pauses that
+warmed the motor."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -189,8 +192,36 @@ def _rises(pairs: pd.DataFrame, highest_power: float) -> tuple[Array, Array, Arr
             found.append((rise, (motor[end] + motor[begin]) / 2, power, interval, unrecorded))
             begin = end
     rise, temperature, power, seconds, flags = np.array(found, dtype=float).reshape(-1, 5).T
-    kept = (flags == 0) | moved_throughout(rise, seconds, flags > 0)
+    kept = (flags == 0) | _moved_throughout(rise, seconds, flags > 0)
     return rise[kept], temperature[kept], power[kept], seconds[kept]
+
+
+def _moved_throughout(rise: Array, seconds: Array, warmed: Flags) -> Flags:
+    """Return whether the joint moved throughout each pause that warmed the motor.
+
+    Parameters
+    ----------
+    rise, seconds : ndarray, shape (pauses,)
+        Rise of the motor's temperature, and duration. [°C], [s]
+    warmed : ndarray of bool, shape (pauses,)
+        Pauses that warmed it.
+
+    Returns
+    -------
+    ndarray of bool, shape (pauses,)
+        Pauses that warmed it at 0.4 times the median rate at least.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> pauses = np.array([True, True, True])
+    >>> _moved_throughout(np.array([6.0, 5.0, 1.0]), np.array([600.0, 500.0, 900.0]), pauses)
+    array([ True,  True, False])
+    """
+    if not warmed.any():
+        return warmed
+    rate = np.divide(rise, seconds, out=np.zeros_like(rise), where=warmed)
+    return warmed & (rate >= _LEAST_RATE * float(np.median(rate[warmed])))
 
 
 def _fit(

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from frictioncli.arrays import Array, Flags, Indices
+from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.heat_balance import heat_of
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.model.zero_load import PAIR_KEY
@@ -16,10 +16,6 @@ _IDLE = 20.0
 
 _WARMED = 0.2
 """A motor that is warmer by more than this after a pause has moved during it. [°C]"""
-
-_LEAST_RATE = 0.4
-"""Least rate of warming of a pause that counts as motion, relative to the median of the pauses that
-warmed the motor."""
 
 _LEAST_SHARE = 0.25
 """Least heat of a pause that counts as motion, relative to the same median: midway between rest and
@@ -157,31 +153,3 @@ def _lowest(temperature: Array, run: Indices) -> Array:
     lowest = np.full(int(run.max()) + 1, np.inf)
     np.fmin.at(lowest, run, temperature)
     return lowest[run]
-
-
-def moved_throughout(rise: Array, seconds: Array, warmed: Flags) -> Flags:
-    """Return whether the joint moved throughout each pause that warmed the motor.
-
-    Parameters
-    ----------
-    rise, seconds : ndarray, shape (pauses,)
-        Rise of the motor's temperature, and duration. [°C], [s]
-    warmed : ndarray of bool, shape (pauses,)
-        Pauses that warmed it.
-
-    Returns
-    -------
-    ndarray of bool, shape (pauses,)
-        Pauses that warmed it at 0.4 times the median rate at least.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> pauses = np.array([True, True, True])
-    >>> moved_throughout(np.array([6.0, 5.0, 1.0]), np.array([600.0, 500.0, 900.0]), pauses)
-    array([ True,  True, False])
-    """
-    if not warmed.any():
-        return warmed
-    rate = np.divide(rise, seconds, out=np.zeros_like(rise), where=warmed)
-    return warmed & (rate >= _LEAST_RATE * float(np.median(rate[warmed])))

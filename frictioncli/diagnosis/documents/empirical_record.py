@@ -159,7 +159,7 @@ def term_record(
 
 
 def gain_record(
-    found: Empirical, units: TorqueUnits, *, delay_is_stated: bool = False
+    found: Empirical, units: TorqueUnits, *, delay_is_stated: bool
 ) -> EmpiricalGainRecord:
     """Return what an empirical term gains as ``diagnosis.json`` has it.
 
@@ -169,7 +169,7 @@ def gain_record(
         The term.
     units : TorqueUnits
         Units of torque and of load.
-    delay_is_stated : bool, optional
+    delay_is_stated : bool
         Whether the delay of the log is stated besides, which is not that of a form.
     """
     gain = found.gain

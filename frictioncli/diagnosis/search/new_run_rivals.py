@@ -113,9 +113,7 @@ def _judged(cause: Cause, causes: Sequence[Cause], found: SearchResult, new: Pro
 
 
 def _fitted(
-    rivals: Sequence[Effect],
-    others: Sequence[EffectFit],
-    found: SearchResult,
+    rivals: Sequence[Effect], others: Sequence[EffectFit], found: SearchResult
 ) -> list[EffectFit]:
     """Return each variant of each rival, fitted to the runs seen beside the other causes."""
     beside = [one for one in others if not one.effect.measurement]
