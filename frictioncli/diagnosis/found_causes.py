@@ -6,7 +6,7 @@ from functools import partial
 
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT, refuted_by_new_run
-from frictioncli.diagnosis.search.measurement import clear_effects
+from frictioncli.diagnosis.search.measurement import clear_effects, smoother
 from frictioncli.diagnosis.search.named_causes import JudgedCauses, Judging
 from frictioncli.diagnosis.search.new_run_rivals import refuted_by_return, without_refuted_rivals
 from frictioncli.diagnosis.search.preparation import Preparation
@@ -45,10 +45,10 @@ class FoundCauses:
 def found_causes(
     judging: Judging, effects: Sequence[Effect], search: Callable[..., SearchResult]
 ) -> FoundCauses:
-    """Search for causes, once more if they show that the measurement has one more effect.
+    """Search for causes, once more if the measurement turns out to be another beside them.
 
-    What the joint adds may have made that impossible or undetermined. If it takes the name of a
-    cause, it is the cause in another form, and not there.
+    What the joint adds may have made an effect of the measurement impossible or undetermined, or
+    possible. If one more takes the name of a cause, it is the cause in another form, and not there.
 
     Parameters
     ----------
@@ -67,11 +67,12 @@ def found_causes(
         for one in first.search.causes
         if one.test.p_value < BEYOND_DOUBT and one.fit.effect.name != LAG
     ]
-    if not known or not first.search.refused:
+    lost = smoother(first.search.measurement)
+    if not known or not (lost or first.search.refused):
         return first
     preparation = Preparation(known, judging.preparation)
     clear = clear_effects(preparation.beside(base), known)
-    if set(clear) <= set(before.effects):
+    if not lost and set(clear) <= set(before.effects):
         return first
     again = _not_refuted(replace(judging, preparation=preparation), effects, search, clear)
     return again if _names(first.judged) <= _names(again.judged) else first

@@ -8,8 +8,9 @@ import pytest
 
 from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.diagnose import diagnose_joint
-from frictioncli.diagnosis.fit.hypotheses import physical_bounds
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, physical_bounds
 from frictioncli.diagnosis.search.measurement import beside_base, clear_effects, measurement_causes
+from frictioncli.diagnosis.search.possible import smoother_than_late
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.timing_causes import late_torque
 from frictioncli.diagnosis.settings import DiagnosisSettings
@@ -196,6 +197,63 @@ def test_every_bound_of_the_measurement_is_of_a_log_that_there_is():
     for effect in MEASUREMENT_EFFECTS:
         for one in effect.coefficients:
             assert max(abs(one.lower), abs(one.upper)) <= most[one.name]
+
+
+def moments(times, response):
+    """Return mean lateness [s] and half the second moment [s²] of a response over time."""
+    weight = response / response.sum()
+    mean = float(weight @ times)
+    return mean, float(weight @ np.square(times)) / 2
+
+
+def fits(lateness, second_moment, error=1e-5):
+    """Return a filter and a delay as if they had been fitted."""
+    return tuple(
+        EffectFit(BY_NAME[name], {}, np.array([value]), np.array([[one**2]]), 100.0)
+        for name, value, one in (
+            ("torque_filter", second_moment, error),
+            ("torque_delay", lateness, 1e-4),
+        )
+    )
+
+
+@pytest.mark.parametrize("positions_late", [0.0, 0.004, 0.025])
+@pytest.mark.parametrize("delay", [0.0, 0.012, 0.1])
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_every_filter_of_a_drive_is_late_by_what_it_smooths(order, delay, positions_late):
+    """Equal stages in a row; the lateness of the positions counts from that of the torque."""
+    times = np.arange(0.0, 1.2, 1e-4)
+    response = times ** (order - 1) * np.exp(-times / 0.02)
+    lateness, second_moment = moments(times + delay - positions_late, response)
+    assert smoother_than_late(*fits(lateness, second_moment)) == ""
+
+
+def test_a_moving_average_is_late_by_what_it_smooths():
+    times = np.arange(0.0, 0.1, 1e-4)
+    assert smoother_than_late(*fits(*moments(times, np.ones_like(times)))) == ""
+
+
+def test_a_torque_that_is_hardly_late_has_passed_no_filter_of_a_tenth_of_a_second():
+    """Nor can such data tell which one it has, beside what looks like a filter."""
+    assert "late by 0.0200 s" in smoother_than_late(*fits(0.02, 0.009, 0.001))
+    assert smoother_than_late(*fits(0.02, 0.009, 0.005)) == ""
+    assert smoother_than_late(*fits(0.02, 0.0003, 0.001)) == ""
+    assert "only to ±0.002 s²" in smoother_than_late(*fits(0.02, 0.0003, 0.001), alone=False)
+    assert smoother_than_late(*fits(0.02, 0.0003, 0.0002), alone=False) == ""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", [0, 5, 9])
+def test_inertia_is_no_filter_of_a_torque_that_hardly_lags(seed):
+    """At the ends of the stroke it would be one of 0.13 s, behind a delay of -0.11 s."""
+    row = examined(World("single", "inertia", seed, size=1.0), "")
+    causes = {tuple(one["effects"]): one for one in json.loads(str(row["causes_json"]))}
+    true = json.loads(str(row["nuisances_json"]))["torque_delay"]["delay"]
+    _, low, high = causes["torque_delay",]["parameters"]["delay"]
+    assert 0.0 <= low <= true <= high
+    left = json.loads(str(row["hidden_json"]))[0]["left_beside"]
+    low, high = causes["inertia",]["visible_ci95"]
+    assert low <= left <= high
 
 
 @pytest.mark.long

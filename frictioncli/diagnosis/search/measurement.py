@@ -25,6 +25,7 @@ from frictioncli.diagnosis.search.effect_size import sizes_of
 from frictioncli.diagnosis.search.possible import (
     beyond_bounds,
     impossible,
+    smoother_than_late,
     standard_errors,
     times_its_range,
     undetermined,
@@ -35,6 +36,7 @@ from frictioncli.diagnosis.search.step import Step
 from frictioncli.distributions import chi2_tail
 from frictioncli.effects import MEASUREMENT_EFFECTS
 from frictioncli.effects.base import Effect, applicable
+from frictioncli.effects.torque_delay import EFFECT as TORQUE_DELAY
 from frictioncli.effects.torque_filter import EFFECT as TORQUE_FILTER
 from frictioncli.wording import in_words
 
@@ -113,12 +115,31 @@ def beside_base(
             doubted = _first([(one, impossible(one.fit, problem)) for one in causes])
             against = sorted(doubted, key=lambda one: -times_its_range(one[0].fit, problem))[:1]
             before = causes if against else ()
+        against = against or smoother(causes, alone=not found)
         against = against or _first([(one, undetermined(one.fit, problem)) for one in causes])
         if not against:
             return BesideBase(precomputed=precomputed, effects=beside, refused=tuple(refused))
         refused += [replace(one, standing="undetermined", reason=why) for one, why in against]
         gone = {one.fit.effect.name for one, _ in against}
         beside = tuple(one for one in beside if one.name not in gone)
+
+
+def smoother(causes: Sequence[Cause], *, alone: bool = True) -> list[tuple[Cause, str]]:
+    """Return the filter with the reason if it smooths the torque more than the torque is late.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Effects of the measurement that are fitted together.
+    alone : bool, optional
+        Whether no property of the joint stands beside them.
+    """
+    fits = {one.fit.effect.name: one for one in causes}
+    late, smeared = fits.get(TORQUE_DELAY.name), fits.get(TORQUE_FILTER.name)
+    if late is None or smeared is None:
+        return []
+    why = smoother_than_late(smeared.fit, late.fit, alone=alone)
+    return [(smeared, why)] if why else []
 
 
 def _first(doubted: Sequence[tuple[Cause, str]]) -> list[tuple[Cause, str]]:

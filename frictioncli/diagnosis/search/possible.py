@@ -22,6 +22,9 @@ _EXCEEDING = 1.5
 _OF_UNIFORM = float(np.sqrt(12.0))
 """Range of a uniform distribution in standard deviations: physics alone tells that much."""
 
+_POSITIONS_LATE = 0.03
+"""By how much the positions of a log may be late: some cycles of a bus. [s]"""
+
 _RETURNED = 0.2
 """Least share of what has decayed that must have come back to be seen to come back."""
 
@@ -129,6 +132,38 @@ def impossible(fit: EffectFit, problem: Problem) -> str:
         if not low <= value <= high and abs(value) > Z95 * error
     )
     return beyond_bounds(fit, problem) or next(outside, "")
+
+
+def smoother_than_late(smeared: EffectFit, late: EffectFit, *, alone: bool = True) -> str:
+    r"""Return why a filter cannot be told from a delay, or is none; empty if it may be there.
+
+    A filter of time constant :math:`\theta` makes the torque late by as much, so that the mean
+    lateness is :math:`D \ge \theta - \delta`, where positions are late by :math:`\delta`. The
+    second moment is :math:`(\theta^2 + D^2) / 2`.
+
+    Parameters
+    ----------
+    smeared, late : EffectFit
+        Filter and delay, fitted together.
+    alone : bool, optional
+        Whether no property of the joint stands beside them. Else a filter that these data do not
+        determine to that would take the torque of inertia.
+    """
+    lateness = float(late.coefficients[0])
+    most = max(lateness + Z95 * float(standard_errors(late)[0]), 0.0)
+    greatest = (most**2 + (most + _POSITIONS_LATE) ** 2) / 2
+    value, error = float(smeared.coefficients[0]), float(standard_errors(smeared)[0])
+    moment, delay = smeared.effect.coefficients[0], late.effect.coefficients[0]
+    shown = with_unit(delay, lateness)
+    if value - Z95 * error > greatest:
+        return f"{_impossible_value(moment, value)} of a torque that is late by {shown} on average"
+    if not alone and _OF_UNIFORM * error > greatest:
+        return (
+            f"these data determine its {in_words(moment.name)} only to"
+            f" ±{Z95 * error:.2g}{_unit(moment)}, and a torque that is late by {shown} has"
+            f" {greatest:.2g}{_unit(moment)} at most"
+        )
+    return ""
 
 
 def undetermined(fit: EffectFit, problem: Problem) -> str:

@@ -9,7 +9,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.left_by_base import left_by, rms_left, torque_left_by
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.effects.base import Effect, applicable
+from frictioncli.effects.base import applicable
 from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
@@ -52,20 +52,6 @@ def behind_sensor(
         _beside_any(sensor, one, problem, span) if one.fit.effect.name == THERMAL_LAG.name else one
         for one in causes
     )
-
-
-def is_in_size_of(effect: Effect, causes: Sequence[Cause]) -> bool:
-    """Return whether an effect of the measurement may be a part of what is seen of a named cause.
-
-    Parameters
-    ----------
-    effect : Effect
-        The effect.
-    causes : sequence of Cause
-        Causes that are named.
-    """
-    lag = any(one.effects == (THERMAL_LAG.name,) for one in causes)
-    return effect is SENSOR_LAG and lag
 
 
 def _beside_any(sensor: Array, cause: Cause, problem: Problem, span: Array) -> Cause:

@@ -7,7 +7,13 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import strength
 from frictioncli.diagnosis.search.measurement import CLEAR
-from frictioncli.diagnosis.search.slow_sensor import is_in_size_of
+from frictioncli.effects.inertia import EFFECT as INERTIA
+from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
+from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
+from frictioncli.effects.torque_filter import EFFECT as TORQUE_FILTER
+
+_IN_SIZE_OF = {SENSOR_LAG.name: THERMAL_LAG.name, TORQUE_FILTER.name: INERTIA.name}
+"""Effects of the measurement that may be a part of what is seen of a property of the joint."""
 
 
 def visible_causes(
@@ -33,9 +39,12 @@ def visible_causes(
     def is_worth_a_line(cause: Cause) -> bool:
         return not cause.fit.effect.measurement or cause.test.p_value < CLEAR
 
+    alone = {one.effects[0] for one in causes if len(one.effects) == 1}
     left = [one for one in unnamed if is_worth_a_line(one)]
     left += [
-        one for one in refused if is_worth_a_line(one) or is_in_size_of(one.fit.effect, causes)
+        one
+        for one in refused
+        if is_worth_a_line(one) or _IN_SIZE_OF.get(one.fit.effect.name) in alone
     ]
 
     def share(cause: Cause) -> float:
