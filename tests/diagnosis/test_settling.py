@@ -39,8 +39,23 @@ def test_a_short_stroke_counts_on_the_time_after_the_acceleration(seconds, kept)
     """Of four bins both ends are the first of a direction, 0.11 s after it at 45 deg/s."""
     rows = torques(45.0).iloc[:4]
     assert settled(rows, seconds).sum() == kept
-    # a long one does not need to
-    assert not settled(torques(45.0), 0.02)[[0, -1]].any()
+
+
+@pytest.mark.parametrize(("delay", "time_constant"), [(0.01, 0.0), (0.005, 0.01), (0.012, 0.04)])
+def test_of_the_acceleration_the_outermost_bins_have_a_share_of_less_than_a_hundredth(
+    delay, time_constant
+):
+    """Even where it ended 0.1 s before them and not 0.2 s: else they are left out."""
+    rows = torques(20.0)
+    wait = settling_time(shift=delay + time_constant, smear=time_constant**2)
+    kept = settled(rows, wait)
+    shares = [
+        np.exp(-(0.1 - delay) / time_constant) if time_constant else float(delay > 0.1)
+        for _ in rows.index[[0, -1]][kept[[0, -1]]]
+    ]
+    assert all(share < 0.01 for share in shares)
+    # only a slow filter costs them
+    assert kept.all() == (time_constant < 0.04)
 
 
 def test_without_a_delay_nothing_is_left_out():
