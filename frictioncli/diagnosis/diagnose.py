@@ -34,7 +34,7 @@ from frictioncli.diagnosis.search.measurement import (
 )
 from frictioncli.diagnosis.search.named_causes import Judging, named_causes
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
-from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
+from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit, left_of
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
 from frictioncli.diagnosis.search.stated_size import sizes_in_model
@@ -231,6 +231,7 @@ def diagnose_joint(
             NewRunMisfit.of(problem, new, predicted, weighted_fit, step.noise()),
             [one for one in effects if one.name not in {cause.fit.effect.name for cause in causes}],
             floor=found.floor,
+            usual=left_of(problem, modelled),
             margin=margin,
         )
         for cause in appeared:
@@ -265,10 +266,8 @@ def diagnose_joint(
     corrected = noticed if extension is not None or empirical is not None else ()
     names = {one.fit.effect.name for one in corrected}
     rest = [one for one in named.others if one.fit.effect.name not in names]
-    given_up = given_up_causes(found, settings.alpha)
-    visible = visible_causes(
-        (*rest, *corrected, *given_up, *result.refuted), found.refused, causes, problem
-    )
+    rest += [*corrected, *given_up_causes(found, settings.alpha), *result.refuted]
+    visible = visible_causes(rest, found.refused, causes, problem)
     return Diagnosis(
         joint=joint,
         torque_unit=torque_unit,

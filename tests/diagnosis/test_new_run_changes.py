@@ -8,7 +8,7 @@ from frictioncli.diagnosis.fit.extension import extend, misfits
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
-from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
+from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit, left_of
 from frictioncli.effects import BY_NAME, EFFECTS
 from frictioncli.effects.history import stretches
 from frictioncli.model.noise import Noise
@@ -35,7 +35,8 @@ def found(table, margin=0.26):
     weighted_fit = WeightedFit(*weights)
     extension = extend(problem, weighted_fit, [])
     residual = NewRunMisfit.of(problem, new, extension, weighted_fit, (NOISE, NOISE))
-    causes = changes_on_new_run(residual, EFFECTS, floor=FLOOR, margin=margin)
+    usual = left_of(problem, extension)
+    causes = changes_on_new_run(residual, EFFECTS, floor=FLOOR, usual=usual, margin=margin)
     return causes, extension, new
 
 
@@ -48,6 +49,17 @@ def moment(table, there):
     """Return the share of all pairs before the first that has a change."""
     pairs = table.assign(there=there).drop_duplicates(["run", "pair"]).sort_values(["run", "time"])
     return float(np.argmax(pairs["there"].to_numpy()) / len(pairs))
+
+
+def test_a_payload_on_a_joint_that_rings_behind_its_ramps_every_day(torques):
+    """2 N·m of load at the fastest moves' outer angles on both days are no part of what begins."""
+    fastest = (torques["speed"] > 0.9 * torques["speed"].max()).to_numpy()
+    ringing = np.where(fastest, 4.0 * np.cos(np.radians(9.0 * torques["position"])), 0.0)
+    rings = torques.assign(load_torque=torques["load_torque"] + ringing)
+    assert found(rings)[0] == ()
+    (cause,), _, _ = found(with_payload(rings, second(torques), 2.0, 1.0))
+    assert cause.effects == ("payload_change",)
+    assert cause.fit.coefficients == pytest.approx([2.0, 1.0], abs=0.3)
 
 
 @pytest.mark.parametrize("after", [-1.0, 3.6])

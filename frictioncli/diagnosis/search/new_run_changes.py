@@ -54,7 +54,8 @@ ADEQUATE = 1.25
 """Greatest misfit on a run kept out of a model that is adequate, as a multiple of the noise."""
 
 _EXPLAINED = 0.8
-"""Least share of the mean square that is left beyond the noise, for a change to be its cause."""
+"""Least share of the mean square that is left beyond the noise, and beyond what the model leaves of
+the runs seen, for a change to be its cause."""
 
 _CLEARLY = 30.0
 """Statistic by which a change explains more than each of its rivals."""
@@ -75,9 +76,11 @@ _Z95 = 1.96
 
 
 def changes_on_new_run(
-    residual: NewRunMisfit, tried: Sequence[Effect], *, floor: float, margin: float
+    residual: NewRunMisfit, tried: Sequence[Effect], *, floor: float, usual: float, margin: float
 ) -> tuple[Cause, ...]:
     """Return the change that explains what the extended model leaves of a new run, if one does.
+
+    It need not explain what the model leaves of the runs seen as well, as ringing behind ramps.
 
     Parameters
     ----------
@@ -87,12 +90,15 @@ def changes_on_new_run(
         Effects that are no cause yet; of them changes count.
     floor : float
         RMS of the noise that is new with each pair. [N·m]
+    usual : float
+        RMS of what the model leaves of the runs seen. [N·m]
     margin : float
         Smallest size worth a name. [N·m]
     """
     left = residual.mean_square(residual.misfit)
     if left <= (ADEQUATE * floor) ** 2:
         return ()
+    begins = left - max(floor, usual) ** 2
     found = []
     for effect in tried:
         if effect.moments is None:
@@ -105,7 +111,7 @@ def changes_on_new_run(
             misfit - columns @ cause.fit.coefficients
             for misfit, columns in zip(residual.misfit, torque, strict=True)
         )
-        if left - residual.mean_square((without[0], without[1])) >= _EXPLAINED * (left - floor**2):
+        if left - residual.mean_square((without[0], without[1])) >= _EXPLAINED * begins:
             found.append(cause)
     return tuple(sorted(found, key=lambda one: -one.test.statistic)[:1])
 
