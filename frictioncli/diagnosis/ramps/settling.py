@@ -7,10 +7,10 @@ segment still remembers the start of the move: friction that was lower and inert
 
 5 % of it is left behind a filter of first order. The bins before that time, in either direction,
 would look like inertia or like friction after a reversal. A segment begins some time after the
-acceleration: twice :math:`t_s` after it 0.25 % are left. Half of that time is counted on, since an
-acceleration may end later than the speed shows, and all of it where a pair would lose most of its
-bins. So a delay that is short against it costs no bins, of which the outermost tell how friction
-builds up after a reversal.
+acceleration: twice :math:`t_s` after it 0.25 % are left. Half of that time is counted on where the
+segment is long enough for all of it, since an acceleration may end later than the speed shows; and
+all of it where a pair would lose most of its bins. So a delay that is short against it costs slow
+moves no bins, of which the outermost tell how friction builds up after a reversal.
 """
 
 import math
@@ -37,7 +37,7 @@ _PART_DROPPED = 1 / 3
 """That time in a short segment, relative to the time of its bins."""
 
 _COUNTED = 0.5
-"""Part of the time between acceleration and segment that is counted on for every pair."""
+"""Part of the time between acceleration and segment that is counted on in long segments."""
 
 _HALF = 0.5
 """Share of the bins of a pair of which more must be settled by themselves."""
@@ -101,8 +101,8 @@ def settled(torques: pd.DataFrame, seconds: float) -> Flags:
     speed = torques["speed"].to_numpy(float)
     passed = np.minimum(position - low, high - position) / speed
     before = np.minimum(_DROPPED, _PART_DROPPED * (high - low) / speed)
-    found = passed >= (1 - _SETTLED) * seconds
-    found |= _COUNTED * before + passed >= 2.0 * seconds
+    counted = np.where(before < _DROPPED, 0.0, _COUNTED * _DROPPED)
+    found = (passed >= (1 - _SETTLED) * seconds) | (counted + passed >= 2.0 * seconds)
     share = pd.Series(found, torques.index).groupby(
         [torques[name] for name in PAIR_KEY], sort=False, observed=True
     )
