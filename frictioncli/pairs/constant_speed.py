@@ -292,8 +292,8 @@ def _trimmed(
     Both are shorter in short moves, but not in short pieces of moves that a gap of the log cuts
     off: these accelerate and ring as long as the whole move.
     """
-    quarter = (time[end - 1] - time[begin]) / 4
-    settling = np.where(cut, settings.settling, np.minimum(settings.settling, quarter))
+    most = settings.settling_share * (time[end - 1] - time[begin])
+    settling = np.where(cut, settings.settling, np.minimum(settings.settling, most))
     settled = np.minimum(np.searchsorted(time, time[begin] + settling), end)
     margin = np.minimum(half_window(time, begin, end, width), (end - begin) // 4)
     whole = end - np.searchsorted(time, time[end - 1] - SMOOTHING, side="right")
@@ -313,7 +313,7 @@ def _after_ringing(
     that the speed no longer shows still accelerates.
     """
     begin, end = plateau
-    quarter = (time[end - 1] - time[begin]) / 4
-    later = time[np.minimum(quiet, end - 1)] + np.minimum(settings.settling, quarter)
+    most = settings.settling_share * (time[end - 1] - time[begin])
+    later = time[np.minimum(quiet, end - 1)] + np.minimum(settings.settling, most)
     after = np.minimum(np.searchsorted(time, later), end)
     return np.where(quiet > settled, np.maximum(after, settled), settled)

@@ -6,6 +6,12 @@ from pathlib import Path
 from frictioncli.errors import OptionError
 from frictioncli.options import option
 
+_SETTLING = 0.2
+"""Time dropped after an acceleration, if not told otherwise. [s]"""
+
+_SHARE = 0.25
+"""Greatest share of a segment that this may be: more would leave little of fast moves."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SteadySettings:
@@ -19,8 +25,8 @@ class SteadySettings:
         Greatest deviation from the speed of a segment, relative to it; more is allowed where the
         noise of the velocity is larger. [-]
     settling : float
-        Time dropped after an acceleration, at most a quarter of the segment, and once more after
-        the ringing of a servo that goes on beyond it. [s]
+        Time dropped after an acceleration, at most :attr:`settling_share` of the segment, and once
+        more after the ringing of a servo that goes on beyond it. [s]
     min_samples : int
         Least number of samples of a constant-speed segment.
     """
@@ -31,7 +37,13 @@ class SteadySettings:
     speed_tolerance: float = field(
         default=0.02, metadata=option("Allowed deviation from constant speed [fraction of it].")
     )
-    settling: float = field(default=0.2, metadata=option("Time dropped after acceleration [s]."))
+    settling: float = field(
+        default=_SETTLING,
+        metadata=option(
+            "Time dropped after acceleration [s]; of a short constant-speed part at most a quarter,"
+            " and more in proportion to what exceeds the default."
+        ),
+    )
     min_samples: int = field(
         default=3, metadata=option("Minimum number of samples of a constant-speed part.")
     )
@@ -47,6 +59,15 @@ class SteadySettings:
                 f"settling {self.settling:g} s and minimum of {self.min_samples} samples: expected"
                 " >= 0 s and at least 2"
             )
+
+    @property
+    def settling_share(self) -> float:
+        """Greatest share of a segment that is dropped: a quarter, more of a longer time [-].
+
+        Whose link still rings when the usual time is over can so drop all that rings, at the cost
+        of the fastest moves.
+        """
+        return min(_SHARE * max(self.settling / _SETTLING, 1.0), 1.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

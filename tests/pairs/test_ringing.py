@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 
 from frictioncli.pairs.ringing import ringing_ends
+from frictioncli.pairs.settings import SteadySettings
 from tests.moves import move_sequence
 from tests.pairs.test_constant_speed import segments_of
 
@@ -89,3 +90,18 @@ def test_each_plateau_is_judged_by_itself():
     assert found.tolist() == [alone[0], 407, 812 + alone[0]]
     # exp(-t/40) of 2 deg/s falls below 0.32 deg/s, 5 % of the ramp at 5 Hz, after 74 samples
     assert alone[0] == pytest.approx(74, abs=13)
+
+
+@pytest.mark.parametrize(("settling", "share"), [(0.1, 0.25), (0.2, 0.25), (0.4, 0.5), (2.0, 1.0)])
+def test_who_demands_more_settling_gets_more_of_a_short_segment(settling, share):
+    """A link that rings behind a stiff servo shows in the torque alone: the user must tell."""
+    assert SteadySettings(settling=settling).settling_share == pytest.approx(share)
+    motion = rung(140.0, acceleration=800.0, frequency=12.0, damping=0.9, stroke=80.0)
+    held = motion["time"][motion["velocity"] > 0.98 * 140.0]
+    segments, _ = segments_of(motion, settling=settling)
+    dropped = [motion["time"].iloc[one.start] - held.iloc[0] for one in segments]
+    expected = min(settling, share * float(np.ptp(held)))
+    if share < 1.0:
+        assert dropped == pytest.approx([expected], abs=0.03)
+    else:
+        assert dropped == []

@@ -172,7 +172,14 @@ def _experiment_along(axes: tuple[str, ...], diagnosis: Diagnosis) -> str:
             "Repeat the same moves over several hours and on another day, and note what changes:"
             " the room, pauses, payloads, what is mounted, oil, and the brake."
         )
-    return f"Measure more values of {_along(axes)}, in random order, on another day."
+    ringing = (
+        " Pair again with --settling 0.4 and diagnose: if it is gone, the joint still rings behind"
+        " its accelerations."
+    )
+    return (
+        f"Measure more values of {_along(axes)}, in random order, on another day."
+        f"{ringing if set(axes) == {'position', 'speed'} else ''}"
+    )
 
 
 def _in_words(forms: tuple[LocatedRecord, ...]) -> str:
