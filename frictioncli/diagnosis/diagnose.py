@@ -6,26 +6,24 @@ of the lack of fit tells what no effect explains; the gain is measured on a held
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import pandas as pd
 
-from frictioncli.diagnosis.data.problem import Misfit, Problem
 from frictioncli.diagnosis.data.worst_misfits import worst_misfits
-from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
+from frictioncli.diagnosis.empirical.estimate import empirical_term
 from frictioncli.diagnosis.empirical.on_new_run import structure_on_new_run
 from frictioncli.diagnosis.empirical.unexplained import unexplained
 from frictioncli.diagnosis.fit.extension import Extension, extend, measured_gain
-from frictioncli.diagnosis.fit.gain import Gain
 from frictioncli.diagnosis.found_causes import found_causes
-from frictioncli.diagnosis.ramps.evidence import RampEvidence, RampLog, ramp_evidence
-from frictioncli.diagnosis.ramps.settling import Settling, settled_problems
-from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
+from frictioncli.diagnosis.needless_steps import without_needless_steps
+from frictioncli.diagnosis.ramps.evidence import RampLog, ramp_evidence
+from frictioncli.diagnosis.ramps.settling import settled_problems
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_search import find_causes
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.late_ripple import shown_by_ripple
 from frictioncli.diagnosis.search.margin import channel_margin, margin_of
 from frictioncli.diagnosis.search.measurement import (
@@ -36,12 +34,11 @@ from frictioncli.diagnosis.search.named_causes import Judging, named_causes
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit, left_of
 from frictioncli.diagnosis.search.preparation import Preparation
-from frictioncli.diagnosis.search.search_result import SearchResult, given_up_causes
+from frictioncli.diagnosis.search.search_result import given_up_causes
 from frictioncli.diagnosis.search.stated_size import sizes_in_model
 from frictioncli.diagnosis.search.timing_causes import late_torque
 from frictioncli.diagnosis.search.verdict import verdict_of, visible_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
-from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
 from frictioncli.diagnosis.thermal.refine import LAG, settled
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
@@ -50,88 +47,6 @@ from frictioncli.logs.runs.run_order import runs_in_order
 
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Diagnosis:
-    """Result of the diagnosis of a joint.
-
-    Attributes
-    ----------
-    joint : int
-        Joint number.
-    torque_unit : str
-        Unit of everything torque-like.
-    verdict : {"no_evidence", "named", "ambiguous", "unnamed"}
-        Whether causes were found, and whether each has a single name.
-    causes : tuple of Cause
-        Causes found, strongest first.
-    visible : tuple of Cause
-        Causes that are significant but do not improve the prediction enough to be modelled.
-    structure : Structure or None
-        Structure that no effect of the catalogue explains.
-    gain : Gain or None
-        Reduction of the misfit by the extension; none where no cause was found.
-    corrected : tuple of Cause
-        Effects of the measurement that are not named, and that the extension corrects all the same.
-    extension : Extension or None
-        The base with the causes and what is corrected, refitted.
-    predicted : Extension
-        The base refitted alone or with what is named, for the rows judged on.
-    base : Problem
-        The rows without the hold-out run, with the base model about which the extension is linear.
-    judged : Problem
-        The rows on which the gain is measured: those of the hold-out run where there is one.
-    floor : float
-        RMS of the noise that is new with each pair, which no model can predict. [N·m]
-    search, tried : SearchResult, tuple of Effect
-        The last search and the catalogue, for sizes that would have been named.
-    margin : float
-        Smallest size worth a name. [N·m]
-    rmse, worst : float, tuple of Misfit
-        RMS misfit of the base model [N·m], and the greatest mean misfits.
-    runs, held_out : tuple of str, str or None
-        Runs of the diagnosis, and the hold-out run.
-    ramps : RampEvidence or None
-        Evidence of the ramps of the moves, where the log has them.
-    thermal : ThermalEstimate or None
-        Temperature of the gear, where a lag of it is a cause.
-    timing : TimingRivals or None
-        By how much the torque is late, and whether by a delay or a filter.
-    load_margin : float or None
-        The margin of what shows in a load channel of the log; none without one. [N·m]
-    settling : Settling or None
-        Bins that were left out because the logged torque had not settled.
-    empirical : Empirical or None
-        A term for what is left without a known cause; none where it is not worth using.
-    """
-
-    joint: int
-    torque_unit: str
-    verdict: str
-    causes: tuple[Cause, ...]
-    visible: tuple[Cause, ...]
-    structure: Structure | None
-    gain: Gain | None
-    corrected: tuple[Cause, ...]
-    extension: Extension | None
-    predicted: Extension
-    base: Problem
-    judged: Problem
-    floor: float
-    search: SearchResult
-    tried: tuple[Effect, ...]
-    margin: float
-    rmse: float
-    worst: tuple[Misfit, ...]
-    runs: tuple[str, ...]
-    held_out: str | None
-    ramps: RampEvidence | None
-    thermal: ThermalEstimate | None = None
-    timing: TimingRivals | None = None
-    load_margin: float | None = None
-    settling: Settling | None = None
-    empirical: Empirical | None = None
 
 
 def diagnose_joint(
@@ -168,6 +83,24 @@ def diagnose_joint(
     NotEnoughData
         If there are too few pairs.
     """
+    return without_needless_steps(
+        lambda catalogue: _diagnosed(
+            torques, temperature, torque_unit, settings, catalogue, ramps, doubt
+        ),
+        effects,
+    )
+
+
+def _diagnosed(
+    torques: pd.DataFrame,
+    temperature: str,
+    torque_unit: str,
+    settings: DiagnosisSettings,
+    effects: Sequence[Effect],
+    ramps: RampLog | None,
+    doubt: str,
+) -> Diagnosis:
+    """Return the diagnosis of one joint with one catalogue."""
     joint = int(torques["joint"].iloc[0])
     runs = runs_in_order(torques)
     held_out = runs[-1] if len(runs) > 1 else None

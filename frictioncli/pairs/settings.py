@@ -40,8 +40,8 @@ class SteadySettings:
     settling: float = field(
         default=_SETTLING,
         metadata=option(
-            "Time dropped after acceleration [s]; of a short constant-speed part at most a quarter,"
-            " and more in proportion to what exceeds the default."
+            "Time dropped after acceleration [s]; at most a quarter of a constant-speed part, more"
+            " in proportion if set above the default."
         ),
     )
     min_samples: int = field(

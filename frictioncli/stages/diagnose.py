@@ -1,11 +1,9 @@
 """Causes of the misfit between simulated and measured torque: ``diagnose``."""
 
 from dataclasses import asdict
-from functools import partial
 from pathlib import Path
 
 from frictioncli import schemas, tables
-from frictioncli.diagnosis.beside_forms import without_needless_steps
 from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.document import read_diagnoses
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
@@ -56,16 +54,13 @@ def diagnose(
         try:
             if rows.empty:
                 raise NotEnoughData(f"{work / TORQUES} has no rows of joint {model.joint}")
-            diagnosis = without_needless_steps(
-                partial(
-                    diagnose_joint,
-                    rows,
-                    model.temperature,
-                    unit,
-                    settings,
-                    ramps=ramps.get(model.joint),
-                    doubt=two_loads.get(str(model.joint), ""),
-                )
+            diagnosis = diagnose_joint(
+                rows,
+                model.temperature,
+                unit,
+                settings,
+                ramps=ramps.get(model.joint),
+                doubt=two_loads.get(str(model.joint), ""),
             )
         except NotEnoughData as fault:
             faults.append(str(fault))

@@ -11,7 +11,8 @@ import functools
 
 import pytest
 
-from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, EFFECTS
 from frictioncli.simulator.settings import SynthesisSettings

@@ -6,12 +6,13 @@ import pytest
 from frictioncli.deployment.extension import deployable_extension
 from frictioncli.diagnosis.data.build_problem import simulated
 from frictioncli.diagnosis.data.gravity_document import stated_gravity
-from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
+from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_document import ExtendedDocument, extended_model
 from frictioncli.diagnosis.documents.extended_model import ExtendedModel
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.documents.reload import reload
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.documents import decode, to_json
 from frictioncli.model.friction import friction_torque

@@ -19,9 +19,10 @@ from frictioncli import schemas, tables
 from frictioncli.challenge.subject import Subject, read_subjects
 from frictioncli.challenge.trial import Planter
 from frictioncli.challenge_schema import CHALLENGE
-from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
+from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.left_by_base import left_by, span_of
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.ramps.evidence import ramp_logs
 from frictioncli.diagnosis.search import detectable_size
 from frictioncli.diagnosis.search.planted_torque import PlantedTorque

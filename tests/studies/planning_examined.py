@@ -10,9 +10,10 @@ from frictioncli.design.plan import CHECK, plan_joint
 from frictioncli.design.selection import steps_of
 from frictioncli.design.settings import PlanSettings
 from frictioncli.diagnosis.data.build_problem import build_problems
-from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint
+from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.extended_document import extended_model
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.margin import margin_of
 from frictioncli.diagnosis.search.standing import with_standing, without_cancelling

@@ -20,11 +20,12 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.diagnose import Diagnosis, diagnose_joint, predicting
+from frictioncli.diagnosis.diagnose import diagnose_joint, predicting
 from frictioncli.diagnosis.documents.document import DiagnosisDocument
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.extension import misfits
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from tests.simulation.torque_table import simulate_world
 from tests.studies.blind_diagnosed import SETTINGS
 from tests.studies.blind_truth import TEMPERATURE, base_and_measurement, problems

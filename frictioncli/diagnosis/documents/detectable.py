@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from frictioncli.diagnosis.diagnose import Diagnosis
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.confounded import unclaimed
 from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE

@@ -7,7 +7,6 @@ import numpy as np
 from msgspec import UNSET
 
 from frictioncli.diagnosis.data.gravity_document import gravity_document
-from frictioncli.diagnosis.diagnose import Diagnosis
 from frictioncli.diagnosis.documents.detectable import detectable_sizes, undetectable_reasons
 from frictioncli.diagnosis.documents.document import (
     CauseRecord,
@@ -39,6 +38,7 @@ from frictioncli.diagnosis.documents.structure_record import (
 from frictioncli.diagnosis.documents.thermal_record import record_of_lag
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.fit.extension import Extension
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.ramps.evidence import RampEstimate
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER

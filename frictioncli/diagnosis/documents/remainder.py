@@ -7,9 +7,9 @@ A model is adequate where its misfit on a run that it has not seen is that of th
 
 import numpy as np
 
-from frictioncli.diagnosis.diagnose import Diagnosis
 from frictioncli.diagnosis.documents.remainder_record import RemainderRecord
 from frictioncli.diagnosis.fit.extension import misfits
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.search.largest_structure import left_structure
 from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from frictioncli.diagnosis.diagnose import Diagnosis
 from frictioncli.diagnosis.documents.document import CauseRecord, StructureRecord
 from frictioncli.diagnosis.documents.empirical_record import (
     EmpiricalGainRecord,
@@ -11,6 +10,7 @@ from frictioncli.diagnosis.documents.empirical_record import (
 )
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.empirical.describe import experiment
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.search.axis_columns import friction_tells_load, load_over_angle
 from frictioncli.diagnosis.search.confounded import has_temperature
 from frictioncli.diagnosis.search.lack_of_fit import Structure

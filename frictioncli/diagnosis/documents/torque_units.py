@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from frictioncli.diagnosis.diagnose import Diagnosis
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.effects.base import Effect
 from frictioncli.effects.parameter import Parameter
 from frictioncli.quantities import TORQUE

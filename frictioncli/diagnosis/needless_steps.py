@@ -9,8 +9,7 @@ zero beside it, the form alone says as much.
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from frictioncli.diagnosis.diagnose import Diagnosis
-from frictioncli.effects import EFFECTS
+from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.effects.base import Effect
 from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
 
@@ -18,7 +17,7 @@ _NEEDLESS = "beside the form of the structure that has no name it may be zero"
 
 
 def without_needless_steps(
-    diagnose: Callable[[Sequence[Effect]], Diagnosis], effects: Sequence[Effect] = EFFECTS
+    diagnose: Callable[[Sequence[Effect]], Diagnosis], effects: Sequence[Effect]
 ) -> Diagnosis:
     """Return a diagnosis in which no step of friction is named that may be zero beside a form.
 
@@ -28,7 +27,7 @@ def without_needless_steps(
     ----------
     diagnose : callable
         Diagnosis with some effects as the catalogue.
-    effects : sequence of Effect, optional
+    effects : sequence of Effect
         The catalogue.
     """
     found = diagnose(effects)
