@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import pytest
-from frictioncli.diagnosis.needless_steps import without_needless_steps
 
+from frictioncli.diagnosis.needless_steps import without_needless_steps
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.run_in import EFFECT as RUN_IN
 from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
