@@ -54,8 +54,8 @@ ADEQUATE = 1.25
 """Greatest misfit on a run kept out of a model that is adequate, as a multiple of the noise."""
 
 _EXPLAINED = 0.8
-"""Least share of the mean square that is left beyond the noise, and beyond what the model leaves of
-the runs seen, for a change to be its cause."""
+"""Least share of the mean square that is left beyond the noise, and of a payload beyond what the
+model leaves of the runs seen, for a change to be its cause."""
 
 _CLEARLY = 30.0
 """Statistic by which a change explains more than each of its rivals."""
@@ -80,7 +80,8 @@ def changes_on_new_run(
 ) -> tuple[Cause, ...]:
     """Return the change that explains what the extended model leaves of a new run, if one does.
 
-    It need not explain what the model leaves of the runs seen as well, as ringing behind ramps.
+    A payload need not explain what the model leaves of the runs seen as well, as ringing behind
+    ramps.
 
     Parameters
     ----------
@@ -98,11 +99,12 @@ def changes_on_new_run(
     left = residual.mean_square(residual.misfit)
     if left <= (ADEQUATE * floor) ** 2:
         return ()
-    begins = left - max(floor, usual) ** 2
     found = []
     for effect in tried:
         if effect.moments is None:
             continue
+        # friction of another day differs from what the model leaves of those seen
+        beyond = max(floor, usual) if effect.channel == "load" else floor
         cause = _change(residual, effect, tried, margin)
         if cause is None:
             continue
@@ -111,7 +113,7 @@ def changes_on_new_run(
             misfit - columns @ cause.fit.coefficients
             for misfit, columns in zip(residual.misfit, torque, strict=True)
         )
-        if left - residual.mean_square((without[0], without[1])) >= _EXPLAINED * begins:
+        if left - residual.mean_square((without[0], without[1])) >= _EXPLAINED * (left - beyond**2):
             found.append(cause)
     return tuple(sorted(found, key=lambda one: -one.test.statistic)[:1])
 
