@@ -164,7 +164,8 @@ def _diagnosed(
             NewRunMisfit.of(problem, new, predicted, weighted_fit, step.noise()),
             [one for one in effects if one.name not in {cause.fit.effect.name for cause in causes}],
             floor=found.floor,
-            usual=left_of(problem, modelled),
+            # structure without a name may be on the held-out run in another way
+            usual=left_of(problem, modelled) if named.structure is None else found.floor,
             margin=margin,
         )
         for cause in appeared:
