@@ -228,6 +228,14 @@ def test_every_filter_of_a_drive_is_late_by_what_it_smooths(order, delay, positi
     assert smoother_than_late(*fits(lateness, second_moment)) == ""
 
 
+@pytest.mark.parametrize("positions_late", [0.03, 0.08])
+def test_torque_that_is_logged_too_early_may_have_passed_a_filter_all_the_same(positions_late):
+    times = np.arange(0.0, 0.5, 1e-4)
+    lateness, second_moment = moments(times - positions_late, np.exp(-times / 0.02))
+    assert lateness < 0.0
+    assert smoother_than_late(*fits(lateness, second_moment)) == ""
+
+
 def test_a_moving_average_is_late_by_what_it_smooths():
     times = np.arange(0.0, 0.1, 1e-4)
     assert smoother_than_late(*fits(*moments(times, np.ones_like(times)))) == ""

@@ -150,8 +150,9 @@ def smoother_than_late(smeared: EffectFit, late: EffectFit, *, alone: bool = Tru
         determine to that would take the torque of inertia.
     """
     lateness = float(late.coefficients[0])
-    most = max(lateness + Z95 * float(standard_errors(late)[0]), 0.0)
-    greatest = (most**2 + (most + _POSITIONS_LATE) ** 2) / 2
+    reach = Z95 * float(standard_errors(late)[0])
+    time_constant = max(lateness + reach, 0.0) + _POSITIONS_LATE
+    greatest = ((abs(lateness) + reach) ** 2 + time_constant**2) / 2
     value, error = float(smeared.coefficients[0]), float(standard_errors(smeared)[0])
     moment, delay = smeared.effect.coefficients[0], late.effect.coefficients[0]
     shown = with_unit(delay, lateness)
