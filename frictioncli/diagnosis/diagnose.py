@@ -16,7 +16,7 @@ from frictioncli.diagnosis.data.worst_misfits import worst_misfits
 from frictioncli.diagnosis.empirical.estimate import empirical_term
 from frictioncli.diagnosis.empirical.on_new_run import structure_on_new_run
 from frictioncli.diagnosis.empirical.unexplained import unexplained
-from frictioncli.diagnosis.fit.extension import Extension, extend, measured_gain
+from frictioncli.diagnosis.fit.extension import Extension, extend, measured_gain, rms_misfit
 from frictioncli.diagnosis.found_causes import found_causes
 from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.needless_steps import without_needless_steps
@@ -32,7 +32,7 @@ from frictioncli.diagnosis.search.measurement import (
 )
 from frictioncli.diagnosis.search.named_causes import Judging, named_causes
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
-from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit, left_of
+from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import given_up_causes
 from frictioncli.diagnosis.search.stated_size import sizes_in_model
@@ -165,7 +165,7 @@ def _diagnosed(
             [one for one in effects if one.name not in {cause.fit.effect.name for cause in causes}],
             floor=found.floor,
             # structure without a name may be on the held-out run in another way
-            usual=left_of(problem, modelled) if named.structure is None else found.floor,
+            usual=rms_misfit(problem, modelled) if named.structure is None else found.floor,
             margin=margin,
         )
         for cause in appeared:

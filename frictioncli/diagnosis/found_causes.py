@@ -6,7 +6,7 @@ from functools import partial
 
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT, refuted_by_new_run
-from frictioncli.diagnosis.search.measurement import clear_effects, smoother
+from frictioncli.diagnosis.search.measurement import clear_effects, doubtful_filter
 from frictioncli.diagnosis.search.named_causes import JudgedCauses, Judging
 from frictioncli.diagnosis.search.new_run_rivals import refuted_by_return, without_refuted_rivals
 from frictioncli.diagnosis.search.preparation import Preparation
@@ -67,7 +67,7 @@ def found_causes(
         for one in first.search.causes
         if one.test.p_value < BEYOND_DOUBT and one.fit.effect.name != LAG
     ]
-    lost = smoother(first.search.measurement)
+    lost = doubtful_filter(first.search.measurement)
     if not known or not (lost or first.search.refused):
         return first
     preparation = Preparation(known, judging.preparation)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.data.build_problem import build_problems
-from frictioncli.diagnosis.fit.extension import extend, misfits
+from frictioncli.diagnosis.fit.extension import extend, misfits, rms_misfit
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
-from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit, left_of
+from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.effects import BY_NAME, EFFECTS
 from frictioncli.effects.history import stretches
 from frictioncli.model.noise import Noise
@@ -35,7 +35,7 @@ def found(table, margin=0.26):
     weighted_fit = WeightedFit(*weights)
     extension = extend(problem, weighted_fit, [])
     residual = NewRunMisfit.of(problem, new, extension, weighted_fit, (NOISE, NOISE))
-    usual = left_of(problem, extension)
+    usual = rms_misfit(problem, extension)
     causes = changes_on_new_run(residual, EFFECTS, floor=FLOOR, usual=usual, margin=margin)
     return causes, extension, new
 

@@ -276,6 +276,19 @@ def misfits(problem: Problem, fitted: Refit) -> tuple[Array, Array]:
     return friction, load
 
 
+def rms_misfit(problem: Problem, fitted: Refit) -> float:
+    """Return the RMS of what a model leaves of the simulated torque [N·m].
+
+    Parameters
+    ----------
+    problem : Problem
+        Rows with the base model that the extension started from.
+    fitted : Refit
+        Changes of the base, and effects.
+    """
+    return float(np.sqrt(np.mean(problem.squared(*misfits(problem, fitted)))))
+
+
 def measured_gain(
     problem: Problem,
     extension: Extension,

@@ -9,10 +9,8 @@ that makes its prediction worse.
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.extension import extend, misfits, refit
+from frictioncli.diagnosis.fit.extension import extend, refit, rms_misfit
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.search.cause import Cause
@@ -165,8 +163,7 @@ def missed_of_new_run(
     float
         The misfit. [N·m]
     """
-    fitted = refit(problem, weighted_fit, fits)
-    return float(np.sqrt(np.mean(new.squared(*misfits(new, fitted)))))
+    return rms_misfit(new, refit(problem, weighted_fit, fits))
 
 
 def uncertain_causes(

@@ -115,7 +115,7 @@ def beside_base(
             doubted = _first([(one, impossible(one.fit, problem)) for one in causes])
             against = sorted(doubted, key=lambda one: -times_its_range(one[0].fit, problem))[:1]
             before = causes if against else ()
-        against = against or smoother(causes, alone=not found)
+        against = against or doubtful_filter(causes, alone=not found)
         against = against or _first([(one, undetermined(one.fit, problem)) for one in causes])
         if not against:
             return BesideBase(precomputed=precomputed, effects=beside, refused=tuple(refused))
@@ -124,7 +124,7 @@ def beside_base(
         beside = tuple(one for one in beside if one.name not in gone)
 
 
-def smoother(causes: Sequence[Cause], *, alone: bool = True) -> list[tuple[Cause, str]]:
+def doubtful_filter(causes: Sequence[Cause], *, alone: bool = True) -> list[tuple[Cause, str]]:
     """Return the filter with the reason if it smooths the torque more than the torque is late.
 
     Parameters

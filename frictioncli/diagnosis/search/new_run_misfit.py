@@ -177,19 +177,6 @@ class NewRunMisfit:
         return NewRunMisfit._under(self.new, self.misfit, self.nuisance, (noises[0], noises[1]))
 
 
-def left_of(problem: Problem, extension: Extension) -> float:
-    """Return the RMS of what a model leaves of the simulated torque [N·m].
-
-    Parameters
-    ----------
-    problem : Problem
-        The runs.
-    extension : Extension
-        The model.
-    """
-    return float(np.sqrt(np.mean(problem.squared(*misfits(problem, extension)))))
-
-
 def _extra(new: Problem) -> tuple[Array, Array]:
     """Return the further variance of the pair means of friction and load [(N·m)²]."""
     return new.temperature_variance, np.zeros_like(new.layout.time)
