@@ -7,7 +7,7 @@ import pytest
 
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import misfit_column
-from frictioncli.diagnosis.fit.hypotheses import hypothesis_of
+from frictioncli.diagnosis.fit.hypotheses import hypothesis_of, physical_bounds
 from frictioncli.diagnosis.fit.left_by_base import left_by
 from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
@@ -31,10 +31,11 @@ from tests.diagnosis.dense_noise import problem
 
 MARGIN = 0.1
 LEVEL = 0.05 / 26
+CHANGE = BY_NAME["step_change"]
 
 
-def torques_of(data, effect, count):
-    return planted_torques(data, effect, error_forms(data, count))
+def torques_of(data, effect, count, least_size=MARGIN):
+    return planted_torques(data, effect, error_forms(data, count), least_size)
 
 
 def step_of(data, discrepancy=0.0075):
@@ -79,6 +80,48 @@ def test_what_is_planted_has_its_size_and_an_error_of_form(name):
         missed = torque - exact
         # relative to the whole torque, whose size an error of form changes a little
         assert np.sqrt(np.mean(np.square(missed))) == pytest.approx(0.1, abs=0.015)
+
+
+def test_a_joint_need_not_brake_as_hard_as_it_accelerates():
+    """Half the difference is torque in friction alone, and no larger than the inertial torque."""
+    data, effect = problem(0), BY_NAME["inertia"]
+    shares = []
+    for one in torques_of(data, effect, 5):
+        inertial, unequal = one.coefficients
+        assert 0 < abs(unequal) <= abs(inertial)
+        assert np.any(one.torque.friction)
+        shares.append(unequal / inertial)
+    assert min(shares) < 0 < max(shares)
+
+
+def test_changes_are_planted_evenly_in_time_however_the_pairs_lie_in_it():
+    """Pairs in the first tenth of the time, and as many in the rest of it."""
+    data = problem(0)
+    clock = data.table.clock - data.table.clock.min()
+    half, whole = float(np.median(clock)), float(clock.max())
+    late = 0.1 + 0.9 * (clock - half) / (whole - half)
+    clock = whole * np.where(clock < half, 0.1 * clock / half, late)
+    tables = {name: replace(getattr(data, name), clock=clock) for name in ("table", "all_runs")}
+    moments = [one.shape["moment"] for one in torques_of(replace(data, **tables), CHANGE, 5)]
+    times = whole * np.array([0.26, 0.38, 0.5, 0.62, 0.74])
+    expected = [np.mean(clock < time) for time in times]
+    assert min(expected) > 0.5
+    np.testing.assert_allclose(moments, expected)
+
+
+def test_what_would_need_an_impossible_coefficient_is_not_planted():
+    """Boundary friction that has fallen to little at the lowest speed of a log."""
+    data, effect = problem(0), BY_NAME["stribeck"]
+    _, (most,) = physical_bounds(effect, data)
+    for least_size in (0.01, 1.0):
+        torques = torques_of(data, effect, 5, least_size)
+        assert len(torques) == 5
+        assert all(least_size * one.coefficients[0] <= most for one in torques)
+    slow = [
+        min(one.shape["velocity"] for one in torques_of(data, effect, 5, least))
+        for least in (0.0, 1.0)
+    ]
+    assert slow[0] < slow[1]
 
 
 def test_a_torque_is_planted_into_inner_products_as_into_the_data():

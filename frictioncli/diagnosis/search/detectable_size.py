@@ -56,7 +56,7 @@ changes what is left by more than a half, and the size that is named by as much.
 _STEP = 2.0
 """Factor from one size that is tried to the next."""
 
-_CLOSE = 1.1
+_CLOSE = 1.03
 """Factor to which the size of a shape is resolved."""
 
 _SAME = 1.2
@@ -133,7 +133,7 @@ def detectable_size(
     )
     margin = channel_margin(step.problem, effect.channel, rules.margin)
     most = _MOST * whole_torque(step.problem, effect.channel)
-    torques = planted_torques(step.problem, effect, rules.forms)
+    torques = planted_torques(step.problem, effect, rules.forms, margin)
     if not (np.isfinite(threshold) and torques and margin < most):
         return None
     shares = left_shares(step.precomputed, [one.torque for one in torques])

@@ -21,7 +21,7 @@ _FORM = 2 * FORM
 """Error of form of what is planted, relative to its size: a joint that follows an entry badly."""
 
 _CHANGE = (0.2, 0.8)
-"""Shares of the pairs between which a change takes place."""
+"""Shares of the time between the first and the last pair between which a change takes place."""
 
 _TRIED = 4
 """How many shapes are tried for each that is wanted: these data may not show one."""
@@ -62,7 +62,7 @@ class PlantedTorque:
 
 
 def planted_torques(
-    problem: Problem, effect: Effect, forms: Sequence[Array]
+    problem: Problem, effect: Effect, forms: Sequence[Array], least_size: float
 ) -> list[PlantedTorque]:
     """Return an effect in different shapes; fewer than asked for where these data show few.
 
@@ -77,11 +77,13 @@ def planted_torques(
         The effect.
     forms : sequence of ndarray, shape (rows,)
         An error of form for each of them.
+    least_size : float
+        Size that is physically possible in each shape that is returned. [unit of its channel]
     """
     found: list[PlantedTorque] = []
     for number, shape in enumerate(_shapes(problem, effect, len(forms))):
         generator = np.random.default_rng(number)
-        one = _planted(problem, effect, shape, generator, forms[len(found)])
+        one = _planted(problem, effect, shape, generator, forms[len(found)], least_size)
         if one is not None:
             found.append(one)
         if len(found) == len(forms):
@@ -117,10 +119,12 @@ def error_forms(problem: Problem, count: int) -> list[Array]:
 def _shapes(problem: Problem, effect: Effect, count: int) -> Iterator[dict[str, float]]:
     """Yield shapes between the bounds of the catalogue, evenly."""
     if effect.moments is not None:
-        share = np.unique(measured_share(problem.all_runs)[problem.rows])
+        clock, share = problem.table.clock, measured_share(problem.all_runs)[problem.rows]
+        first, last = float(np.min(clock)), float(np.max(clock))
         for place in (np.arange(count) + 0.5) / count:
             wanted = _CHANGE[0] + place * (_CHANGE[1] - _CHANGE[0])
-            yield {"moment": float(share[int(wanted * len(share))]), "end": 1.0}
+            later = clock >= first + wanted * (last - first)
+            yield {"moment": float(np.min(share[later])), "end": 1.0}
         return
     axes = effect.shape
     if not axes:
@@ -160,8 +164,9 @@ def _planted(
     shape: dict[str, float],
     generator: np.random.Generator,
     form: Array,
+    least_size: float,
 ) -> PlantedTorque | None:
-    """Return an effect of one shape; None where these data do not show it."""
+    """Return an effect of one shape; None where these data do not show it in the least size."""
     columns = problem.basis(effect, shape)
     main = _rms(main_channel(columns, effect))
     seen = main > _SEEN * main.max(initial=0.0)
@@ -170,6 +175,8 @@ def _planted(
     lower, upper = physical_bounds(effect, problem)
     drawn = np.where(seen, generator.standard_normal(len(main)) / np.where(seen, main, 1.0), 0.0)
     drawn = np.where(lower >= 0, np.abs(drawn), np.where(upper <= 0, -np.abs(drawn), drawn))
+    for number, most in _within(effect).items():
+        drawn[number] = generator.uniform(-1.0, 1.0) * abs(drawn[most])
     form = form[:, np.newaxis]
     whole = Basis(*(one @ drawn[:, np.newaxis] for one in columns))
     missed = _FORM * float(_rms(main_channel(whole, effect))[0])
@@ -177,6 +184,9 @@ def _planted(
     scale = missed / max(float(_rms(errors)[0]), 1e-300)
     torque = Basis(*((1 + scale * form) * one for one in whole))
     size = float(_rms(main_channel(torque, effect))[0])
+    least = least_size / size * drawn
+    if np.any((least < lower) | (least > upper)):
+        return None
     return PlantedTorque(
         effect=effect,
         shape=shape,
@@ -184,6 +194,16 @@ def _planted(
         columns=columns,
         torque=Basis(*(one / size for one in torque)),
     )
+
+
+def _within(effect: Effect) -> dict[int, int]:
+    """Return the coefficients that are no larger than another one, by number, and that one."""
+    names = [one.name for one in effect.coefficients]
+    return {
+        number: names.index(one.within)
+        for number, one in enumerate(effect.coefficients)
+        if one.within
+    }
 
 
 def _rms(columns: Array) -> Array:
