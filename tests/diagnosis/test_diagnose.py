@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -13,6 +14,7 @@ from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document
 from frictioncli.diagnosis.documents.text import verdict_text
 from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
+from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from frictioncli.errors import NotEnoughData, OptionError, TableError
@@ -183,6 +185,22 @@ def test_detectable_sizes_cover_the_catalogue():
     # a ripple is averaged over 160 pairs of 34 bins of 0.3 N·m: about 0.3 * sqrt(2 * 25 / 5440),
     # and the discrepancy has as much again along the same axis
     assert 0.01 < whatever["position_ripple"] < 0.2
+
+
+def test_claims_go_by_the_structure_that_decides_on_names():
+    """Its forms, by which it is described, may be along other axes."""
+    diagnosis = clean(1)
+    described = Structure(
+        axes=("time", "temperature"),
+        channel="friction",
+        p_value=1e-9,
+        statistic=50.0,
+        size=100.0,
+        interval=(90.0, 110.0),
+    )
+    document = diagnosis_document(replace(diagnosis, structure=described), DiagnosisSettings())
+    assert document.detectable["step_change"] is not None
+    assert document.detectable == detectable_sizes(diagnosis)
 
 
 @pytest.mark.long

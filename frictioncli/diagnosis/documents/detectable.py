@@ -6,6 +6,7 @@ from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.confounded import unclaimed
 from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
+from frictioncli.diagnosis.search.understood import structure_beside
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Effect, missing_columns
@@ -33,9 +34,10 @@ def detectable_sizes(diagnosis: Diagnosis, settings: DiagnosisSettings) -> dict[
     """
     if _is_doubtful(diagnosis):
         return dict.fromkeys(effect.name for effect in diagnosis.tried)
-    return diagnosis.search.detectable_sizes(
-        diagnosis.tried, settings.alpha, diagnosis.margin, diagnosis.structure
-    )
+    search, margin = diagnosis.search, diagnosis.margin
+    # what the forms of structure without a name explain of it comes after names are given
+    structure = structure_beside(search.step, diagnosis.causes, margin, settings.alpha)
+    return search.detectable_sizes(diagnosis.tried, settings.alpha, margin, structure)
 
 
 def undetectable_reasons(
