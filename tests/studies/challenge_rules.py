@@ -9,7 +9,7 @@ of the catalogue, and stands beside the size at which it was found in docs/chall
 
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -20,6 +20,7 @@ from frictioncli.challenge.subject import Subject, read_subjects
 from frictioncli.challenge.trial import Planter
 from frictioncli.challenge_schema import CHALLENGE
 from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.documents.detectable import detectable_sizes
 from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.left_by_base import left_by, span_of
 from frictioncli.diagnosis.joint_diagnosis import Diagnosis
@@ -118,11 +119,9 @@ def nearest(diagnosis: Diagnosis, effect: Effect, torque: Basis) -> tuple[Plante
 
 def by_rules(diagnosis: Diagnosis, effect: Effect, torque: PlantedTorque) -> float | None:
     """Return the size from which on a planted torque is named by the rules [N·m]."""
+    one_effect = replace(diagnosis, tried=(effect,))
     with patch.object(detectable_size, "planted_torques", lambda *_: [torque]):
-        sizes = diagnosis.search.detectable_sizes(
-            [effect], DiagnosisSettings().alpha, diagnosis.margin, diagnosis.structure
-        )
-    return sizes[effect.name]
+        return detectable_sizes(one_effect, DiagnosisSettings())[effect.name]
 
 
 def compared(work: Path) -> Iterator[Compared]:

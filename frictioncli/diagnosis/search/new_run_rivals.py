@@ -22,6 +22,9 @@ from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Effect
 from frictioncli.wording import in_words
 
+_OF_TIME = frozenset({"clock", "order", "travel"})
+"""Columns of a table that tell what went before."""
+
 
 def without_refuted_rivals(
     causes: Sequence[Cause], found: SearchResult, new: Problem
@@ -48,7 +51,8 @@ def refuted_by_return(
     """Return causes of which a new run shows that they are back, no longer named.
 
     Each runs in parallel with an effect that comes back by itself, as running-in with friction
-    after a rest: that one then predicts the new run clearly better.
+    after a rest: that one then predicts the new run clearly better. An effect of speed, load,
+    temperature or angle is back there as well, and the runs seen tell it from others as surely.
 
     Parameters
     ----------
@@ -68,7 +72,8 @@ def refuted_by_return(
         known = {*cause.effects, *(one.effect.name for one in others)}
         rivals = [BY_NAME[name] for name in own.confounders if name in tried - known]
         rivals = [one for one in rivals if one.recurs]
-        if not rivals or not predicts_new_run(own) or cause.holds_on_new_run is False:
+        lasting = not _OF_TIME.isdisjoint(own.needs)
+        if not (rivals and lasting and predicts_new_run(own)) or cause.holds_on_new_run is False:
             continue
 
         def missed(fit: EffectFit, others: Sequence[EffectFit] = others) -> float:
