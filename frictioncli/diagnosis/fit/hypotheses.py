@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frictioncli.arrays import Array
+from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.gravity import NAMES
 from frictioncli.diagnosis.data.load_levels import two_level_history
 from frictioncli.diagnosis.data.problem import Problem
@@ -239,3 +239,9 @@ class HypothesisTest:
             The effect at its refined shape.
         """
         return self.log_bayes_factor + max(fit.statistic - self.statistic, 0.0) / 2
+
+
+def free_coefficients(fit: EffectFit) -> Indices:
+    """Return which coefficients of an effect are estimated: those that no bound sets to zero."""
+    free = np.flatnonzero(fit.coefficients)
+    return free if len(free) else np.arange(len(fit.coefficients))

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest
+from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, free_coefficients
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.noise.significance import (
     credible_set,
@@ -33,7 +33,7 @@ from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.rivals import CLEARLY, likeliest, rival_log_bayes_factors
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.shown import shown_by_residuals
-from frictioncli.diagnosis.search.step import Step, free_coefficients
+from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
 from frictioncli.effects.base import Effect, applicable

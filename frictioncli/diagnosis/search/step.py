@@ -7,10 +7,15 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from frictioncli.arrays import Array, Indices
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import basis_columns
-from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, hypothesis_of
+from frictioncli.diagnosis.fit.hypotheses import (
+    EffectFit,
+    HypothesisTest,
+    free_coefficients,
+    hypothesis_of,
+)
 from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, Variances, evaluate
 from frictioncli.diagnosis.fit.planted_columns import with_torque
 from frictioncli.diagnosis.fit.products import Products
@@ -20,6 +25,7 @@ from frictioncli.diagnosis.fit.variance_components import fit_variances
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.ripple_order import at_twice_the_order
 from frictioncli.diagnosis.search.screening import Screened, of_size, screened, test_of
 from frictioncli.effects.base import Basis, Effect
 from frictioncli.effects.history import since_start
@@ -219,6 +225,8 @@ class Step:
     def refined(self, found: EffectFit) -> EffectFit:
         """Return an effect with its shape optimised off the grid, and the variances with it.
 
+        A ripple that consists of its second harmonic alone has twice the order.
+
         Parameters
         ----------
         found : EffectFit
@@ -244,7 +252,7 @@ class Step:
             evaluations=16,
             tolerance=(5e-3, 5e-2),
         )
-        return self.fitted(effect, shape_at(place))
+        return at_twice_the_order(self.fitted(effect, shape_at(place)), self.refined)
 
     def _refined_change(self, found: EffectFit) -> EffectFit:
         """Return a change with its moments moved to single pairs.
@@ -310,9 +318,3 @@ class Step:
         products = self.products.beside([own])
         starts = self.fit.variances, self.precomputed.start
         return fit_variances(self.components, products, self.known, *starts)
-
-
-def free_coefficients(fit: EffectFit) -> Indices:
-    """Return which coefficients of an effect are estimated: those that no bound sets to zero."""
-    free = np.flatnonzero(fit.coefficients)
-    return free if len(free) else np.arange(len(fit.coefficients))
