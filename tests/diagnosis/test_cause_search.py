@@ -246,20 +246,14 @@ def test_effects_that_explain_the_same_share_a_credible_set(catalogue):
     assert "b" not in cause.effects
 
 
-def test_a_cause_beside_which_the_measurement_would_be_impossible_is_given_up(
-    catalogue, monkeypatch
-):
+def test_a_cause_beside_which_the_measurement_would_be_impossible_is_given_up(catalogue):
     """What is found beside it stays; it does not come back."""
-    effects = catalogue(*THREE)
-
-    def impossible(search, accepted):
-        return {"backlash"} if "c" in {one.effect.name for one in accepted} else set()
-
-    monkeypatch.setattr(cause_search._Search, "_impossible_measurement", impossible)
-    data = problem(8, friction=lambda rows: 0.5 * A(rows) + 1.0 * C(rows))
-    found = find_causes(data, effects, SETTINGS, MARGIN)
-    assert names(found) == ["a"]
-    assert found.dropped["c"].startswith("with it, the fitted backlash")
+    effects = catalogue(effect("x", [(1.0, A), (1.0, B)]), effect("c", [(1.0, C)]))
+    measured = replace(effect("measured", [(1.0, B)], lower=0.0), measurement=True)
+    data = problem(8, lambda rows: 1.5 * A(rows) + 0.6 * B(rows) + 0.5 * C(rows))
+    found = find_causes(data, effects, SETTINGS, MARGIN, measurement=(measured,))
+    assert names(found) == ["c"]
+    assert found.dropped["x"].startswith("with it, the fitted measured")
 
 
 def test_what_the_base_leaves_little_of_is_not_searched_for(catalogue):

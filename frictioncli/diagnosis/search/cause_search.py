@@ -21,6 +21,7 @@ from frictioncli.diagnosis.noise.significance import (
     posterior_probabilities,
 )
 from frictioncli.diagnosis.ramps.evidence import RampEvidence, with_ramp_evidence
+from frictioncli.diagnosis.search.cancelling import Cancelling, cancelling
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.effect_size import elsewhere, left_size, sizes_of
@@ -38,13 +39,9 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
 from frictioncli.effects.base import Effect, applicable
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
-from frictioncli.wording import in_words
 
 _LEAST_SHARE = 0.5
 """Share of the margin that the base must leave of an effect for the search to go on with it."""
-
-_SURELY = 4.0
-"""Standard errors by which an effect of the measurement is beyond its bounds without doubt."""
 
 _SUPERFLUOUS = "other causes explain it"
 
@@ -108,12 +105,18 @@ def find_causes(
         new = [one for one in significant if one.name not in superfluous]
         significant = new or significant
         if not significant or len(accepted) >= settings.most:
-            cancelling = search.cancelling(accepted)
-            if cancelling is None:
+            both = search.cancelling(accepted)
+            if both is None:
                 break
-            accepted = [one for one in accepted if one is not cancelling[0]]
-            dropped[cancelling[0].effect.name] = cancelling[1]
-            impossible.add(cancelling[0].effect.name)
+            accepted = [one for one in accepted if one is not both.effect]
+            if not both.stands_alone:
+                kept = tuple(one for one in measurement if one is not both.measured.fit.effect)
+                common = (problem, effects, settings, margin, ramps, discrepancy, preparation)
+                without = find_causes(*common, kept)
+                return replace(without, refused=(*without.refused, both.measured))
+            name = both.effect.effect.name
+            dropped[name] = both.reason
+            impossible.add(name)
             continue
         # what made these superfluous may have been given up since: each comes back once
         for one in significant:
@@ -224,25 +227,9 @@ class _Search:
         known = self.precomputed
         return beyond_bounds(unbounded, known.problem) or elsewhere(known, newest)
 
-    def cancelling(self, accepted: Sequence[EffectFit]) -> tuple[EffectFit, str] | None:
-        """Return an accepted effect that cancels one of the measurement, and the reason.
-
-        Beside it the effect of the measurement is physically impossible, and without it is not.
-        """
-        measured = self._impossible_measurement(accepted)
-        for one in reversed(accepted if measured else ()):
-            others = [other for other in accepted if other is not one]
-            gone = measured - self._impossible_measurement(others)
-            if gone:
-                name = in_words(min(gone))
-                return one, f"with it, the fitted {name} would be physically impossible"
-        return None
-
-    def _impossible_measurement(self, accepted: Sequence[EffectFit]) -> set[str]:
-        """Return the effects of the measurement that are surely beyond their bounds."""
-        found = measurement_causes(Step.of(self.precomputed, accepted), self.beside)
-        problem = self.precomputed.problem
-        return {one.fit.effect.name for one in found if beyond_bounds(one.fit, problem, _SURELY)}
+    def cancelling(self, accepted: Sequence[EffectFit]) -> Cancelling | None:
+        """Return an accepted effect and one of the measurement that cancel each other, if any."""
+        return cancelling(self.precomputed, self.beside, accepted)
 
     def retested(self, accepted: list[EffectFit], dropped: Collection[str] = ()) -> list[EffectFit]:
         """Return the accepted effects, each tested once more beside the others.
