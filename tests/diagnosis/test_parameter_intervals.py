@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.diagnose import diagnose_joint
-from frictioncli.diagnosis.documents.parameters import fitted_parameters
+from frictioncli.diagnosis.documents.parameters import extension_parameters, fitted_parameters
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
 from frictioncli.diagnosis.fit.extension import beside_unfitted, extend
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
@@ -74,6 +74,22 @@ def test_what_compensates_the_shape_is_not_zero(joint, weighted_fit):
     nothing = extend(joint, weighted_fit, [start])
     assert nothing.may_be_zero(0)
     assert nothing.intervals(0)[0] < 0 < nothing.intervals(0)[1]
+
+
+def test_what_the_data_leave_open_ends_at_what_is_possible(joint, weighted_fit):
+    """No boundary friction is many times the whole friction, however wide the interval."""
+    effect, shape = BY_NAME["stribeck"], {"velocity": 8.0, "exponent": 1.0, "shift": 0.0}
+    torque = joint.basis(effect, shape).friction @ np.array([12.0])
+    more = replace(joint, friction=joint.friction + torque)
+    start = EffectFit(effect, shape, np.array([12.0]), np.array([[1.0]]), 0.0)
+    found = extend(more, weighted_fit, [start])
+    open_ended = replace(found, errors=20 * found.errors)
+    assert open_ended.intervals(0)[1][0] > 10 * np.max(more.friction)
+    for extension in (found, open_ended):
+        stated = extension_parameters(extension, "stribeck", more, TorqueUnits("N·m", "N·m"))
+        low, high = stated["boundary_torque"].ci95
+        assert low == extension.intervals(0)[0][0] > 0
+        assert stated["boundary_torque"].estimate < high < 4 * np.max(more.friction)
 
 
 def test_a_delay_that_is_not_named_is_an_error_of_what_it_moves(joint, weighted_fit):

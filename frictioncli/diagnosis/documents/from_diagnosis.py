@@ -126,6 +126,7 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
     if extension is None:
         return ExtendedDocument(**stated, effects=())
     base, form = diagnosis.base.parameters, diagnosis.base.gravity_form
+    units = TorqueUnits.of_diagnosis(diagnosis)
     parameters = _base_parameters(extension, base, model.parameters)
     effects = [
         EffectRecord(
@@ -133,9 +134,7 @@ def extended_document(diagnosis: Diagnosis, model: FrictionModel) -> ExtendedDoc
             equation=one.effect.equation,
             channel=one.effect.channel,
             shape=one.shape,
-            coefficients=extension_coefficients(
-                extension, number, TorqueUnits.of_diagnosis(diagnosis)
-            ),
+            coefficients=extension_coefficients(extension, number, diagnosis.base, units),
         )
         for number, one in enumerate(extension.effects)
     ]
@@ -184,7 +183,8 @@ def _cause_record(diagnosis: Diagnosis, cause: Cause, number: int) -> CauseRecor
     """Return a named cause; its parameters are those of the extended model."""
     effect, extension = cause.fit.effect, _stated(diagnosis)
     assert extension is not None  # there is one wherever there is a cause
-    parameters = extension_parameters(extension, effect.name, TorqueUnits.of_diagnosis(diagnosis))
+    units = TorqueUnits.of_diagnosis(diagnosis)
+    parameters = extension_parameters(extension, effect.name, diagnosis.base, units)
     record = _record(diagnosis, cause, parameters, f"diagnosis-{number}.svg")
     if diagnosis.thermal is None or effect.name != LAG:
         return record

@@ -37,21 +37,18 @@ def fitted_parameters(
     units : TorqueUnits
         Units of torque.
     """
-    values = fit.coefficients
     reach = Z95 * np.sqrt(np.maximum(np.diag(np.atleast_2d(fit.covariance)), 0.0))
-    lower, upper = physical_bounds(fit.effect, problem)
-    possible = (values >= lower) & (values <= upper)
-    low = np.where(possible, np.maximum(values - reach, lower), values - reach)
-    high = np.where(possible, np.minimum(values + reach, upper), values + reach)
-    return _shape(fit) | _coefficients(fit, (low, high), units)
+    interval = (fit.coefficients - reach, fit.coefficients + reach)
+    return _shape(fit) | _coefficients(fit, _possible(fit, interval, problem), units)
 
 
 def extension_parameters(
-    extension: Extension, name: str, units: TorqueUnits
+    extension: Extension, name: str, problem: Problem, units: TorqueUnits
 ) -> dict[str, ParameterRecord]:
     """Return the parameters of an effect of the extended model, all refitted together.
 
-    What the data cannot tell of a shape spans its whole range.
+    What the data cannot tell of a shape spans its whole range, and what they cannot tell of a
+    coefficient ends at its physical bounds.
 
     Parameters
     ----------
@@ -59,15 +56,17 @@ def extension_parameters(
         The extended model.
     name : str
         Name of the effect.
+    problem : Problem
+        The joint's rows.
     units : TorqueUnits
         Units of torque.
     """
     number = [one.effect.name for one in extension.effects].index(name)
-    return _shapes(extension, number) | extension_coefficients(extension, number, units)
+    return _shapes(extension, number) | extension_coefficients(extension, number, problem, units)
 
 
 def extension_coefficients(
-    extension: Extension, number: int, units: TorqueUnits
+    extension: Extension, number: int, problem: Problem, units: TorqueUnits
 ) -> dict[str, ParameterRecord]:
     """Return the coefficients of one effect of the extended model.
 
@@ -77,10 +76,13 @@ def extension_coefficients(
         The extended model.
     number : int
         Place of the effect, from 0.
+    problem : Problem
+        The joint's rows.
     units : TorqueUnits
         Units of torque.
     """
-    return _coefficients(extension.effects[number], extension.intervals(number), units)
+    fit = extension.effects[number]
+    return _coefficients(fit, _possible(fit, extension.intervals(number), problem), units)
 
 
 def statement(
@@ -109,6 +111,19 @@ def statement(
     if stated and not any(one.ci95 is None or one.is_determined for one in stated):
         return f"{effect.summary} {_NO_SIZE}"
     return text.format_map(values)
+
+
+def _possible(
+    fit: EffectFit, interval: tuple[Array, Array], problem: Problem
+) -> tuple[Array, Array]:
+    """Return the intervals of coefficients that are possible, ended at their physical bounds."""
+    (low, high), values = interval, fit.coefficients
+    lower, upper = physical_bounds(fit.effect, problem)
+    possible = (values >= lower) & (values <= upper)
+    return (
+        np.where(possible, np.maximum(low, lower), low),
+        np.where(possible, np.minimum(high, upper), high),
+    )
 
 
 def _coefficients(
