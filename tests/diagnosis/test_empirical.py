@@ -170,6 +170,27 @@ def test_what_the_new_run_has_is_located_and_described_where_it_begins(before, d
         assert gained > 0.7 * (empirical.gain.before**2 - noise**2)
 
 
+def test_all_of_what_begins_on_the_new_run_counts_as_no_base_has_taken_a_part():
+    """A broad bump, a part of which is a constant, which that day's own base would take."""
+
+    def law(rows):
+        return 2.5 * np.exp(-np.square((rows.position - 65.0) / 11.0) / 2)
+
+    seen, new = problem(3, every=16), problem(4, every=16, friction=law)
+    step = Step.of(Precomputed.of(seen), [])
+    extension = extend(seen, step.predicting_fit(), [])
+    _, empirical = structure_on_new_run(
+        step, [], (new, extension), margin=MARGIN, floor=0.3, seed=0
+    )
+    (form,) = empirical.term.forms
+    assert form.coefficients["peak"] == pytest.approx(2.5, rel=0.1)
+    assert empirical.size == pytest.approx(np.sqrt(np.mean(np.square(law(new.table)))), rel=0.1)
+    without = problem(4, every=16)
+    noise = np.sqrt(np.mean(without.squared(*misfits(without, extension))))
+    gained = empirical.gain.before**2 - empirical.gain.after**2
+    assert gained > 0.9 * (empirical.gain.before**2 - noise**2)
+
+
 @pytest.mark.parametrize("or_load", [pytest.param(False, marks=pytest.mark.long), True])
 def test_forms_of_the_load_count_where_the_angle_does_not_tell_it(or_load):
     """Of structure that both explain alike; a peak at a load is at two angles."""

@@ -44,7 +44,7 @@ from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
 from frictioncli.diagnosis.empirical.form_search import LEAST_SCORE, FormSearch, Noises
 from frictioncli.diagnosis.empirical.forms import Form, forms_of
 from frictioncli.diagnosis.empirical.located import Located, located
-from frictioncli.diagnosis.empirical.normal_equations import NormalEquations
+from frictioncli.diagnosis.empirical.normal_equations import Misfits, NormalEquations
 from frictioncli.diagnosis.empirical.random_functions import (
     Function,
     function_of_form,
@@ -150,10 +150,13 @@ def empirical_term(
     base_is_of_others : bool, optional
         Whether base and causes were fitted to other rows, so that they hold nothing of the term.
     """
-    problem, misfit = seen[0], misfits(*seen)
+    problem, before_term = seen[0], misfits(*seen)
     components = step.precomputed.discrepancy.components
+    fitted = FittedColumns.of(problem, step.predicting_fit(), seen[1].effects)
+    # base and causes of others have taken nothing of what is looked for; here they take their part
+    misfit = fitted.left(before_term) if base_is_of_others else before_term
 
-    def reduced(equations: NormalEquations) -> Gain:
+    def reduced(equations: NormalEquations, misfit: Misfits = misfit) -> Gain:
         left = without_term(misfit, equations.predicted_blocks())
         return reduced_by(problem, misfit, left, basis="within_run", floor=floor, seed=seed)
 
@@ -170,7 +173,6 @@ def empirical_term(
     least = float(np.hypot(margin, SHARE * np.mean(np.abs(problem.friction))))
     if not is_worth_using(free.gain, margin):
         return None
-    fitted = FittedColumns.of(problem, step.predicting_fit(), seen[1].effects)
     small = functions_of(problem, components, step.precomputed.start.amplitude)
     search = FormSearch.of(step, fitted, small, misfit)
     best, before = free, free.gain.before
@@ -211,7 +213,9 @@ def empirical_term(
     whole = chosen
     if base_is_of_others:
         whole = chosen.beyond_base()
-        whole = replace(whole, gain=reduced(whole.equations))
+        whole = replace(whole, gain=reduced(whole.equations, before_term))
+        if not is_worth_using(whole.gain, margin):
+            return None
     used = _used(whole, seen, new, margin=margin, floor=floor, seed=seed)
     if used is not None and chosen is described:
         first = accepted[0]

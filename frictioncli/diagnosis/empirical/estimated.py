@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.empirical.fitted_columns import refitted_beside
 from frictioncli.diagnosis.empirical.located import sizes_of_parts
@@ -13,6 +14,7 @@ from frictioncli.diagnosis.empirical.term import EmpiricalTerm
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.fit.gain import Gain, gain_of
+from frictioncli.diagnosis.noise.cosine_series import CosineSeries
 from frictioncli.effects.base import Basis
 
 _LEAST_OF_PART = 1 / 3
@@ -42,14 +44,18 @@ class EstimatedFunctions:
         return term_of(self.equations.problem, self.functions, self.equations.coefficients())
 
     def beyond_base(self) -> "EstimatedFunctions":
-        """Return them with what the base would take of them: it was fitted to other rows."""
-        base = np.vstack(base_rows(self.equations.problem))
+        """Return them with what base and causes take here: these were fitted to other rows."""
+        problem = self.equations.problem
+        base = np.vstack(base_rows(problem))
+
+        def whole(one: Function) -> Array:
+            if isinstance(one.what, CosineSeries):
+                return one.columns + base @ one.taken
+            form, shape = one.what
+            return np.vstack(form.columns(problem.table, shape))
+
         functions = [
-            replace(
-                one,
-                taken=np.zeros_like(one.taken),
-                columns=one.columns + base @ one.taken[: base.shape[1]],
-            )
+            replace(one, taken=np.zeros_like(one.taken), columns=whole(one))
             for one in self.functions
         ]
         columns = np.hstack([one.columns for one in functions])

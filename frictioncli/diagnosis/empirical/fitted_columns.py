@@ -93,6 +93,18 @@ class FittedColumns:
         )
         return taken, np.vstack(both) - self.rows @ taken
 
+    def left(self, misfit: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Return what base and causes, fitted to a misfit, leave of it, shape (rows,) each [N·m].
+
+        Parameters
+        ----------
+        misfit : (ndarray, ndarray), shape (rows,)
+            The misfit of both channels. [N·m]
+        """
+        _, left = self.taken_and_left(Basis(*(one[:, np.newaxis] for one in misfit)))
+        friction, load = np.split(left[:, 0], 2)
+        return friction, load
+
 
 def refitted_beside(
     extension: Extension, taken: Array, coefficients: Array, covariance: Array
