@@ -114,6 +114,32 @@ def test_a_step_at_the_start_of_runs_may_be_friction_after_a_rest(joint, parts, 
 
 
 @pytest.mark.parametrize(
+    ("parts", "fall", "expected"),
+    [
+        # in all but the first pairs of each of two runs
+        ([(0.05, 0.5), (0.55, 1.0)], 3.0, "undetermined"),
+        ([(0.05, 0.5), (0.55, 1.0)], -3.0, "undetermined"),
+        # half of such a fall is less than the change of the load
+        ([(0.05, 0.5), (0.55, 1.0)], 0.5, "named"),
+        # on the first run only, and for half of each run
+        ([(0.05, 1.0)], 3.0, "named"),
+        ([(0.25, 0.5), (0.75, 1.0)], 3.0, "named"),
+    ],
+)
+def test_a_payload_at_the_start_of_each_run_may_be_friction_that_falls_there(
+    joint, parts, fall, expected
+):
+    """Friction that falls from one move of a pair to the other is in the load by half of that."""
+    payload = of("payload_change", 0.6, shape=history(parts))
+    pairs = len(joint.layout.time)
+    first = (np.arange(pairs) % (pairs // 2) < 0.05 * pairs)[joint.layout.row_pair]
+    friction = joint.friction - joint.friction_misfit + fall * first
+    ((found, reason),) = standing(replace(joint, friction=friction), payload)
+    assert found == expected
+    assert ("from move to move" in reason) == (expected != "named")
+
+
+@pytest.mark.parametrize(
     ("places", "expected"),
     [
         ([5, 15, 20], "undetermined"),

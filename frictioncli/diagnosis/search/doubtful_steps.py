@@ -63,6 +63,14 @@ _IN_FIRST_PAIRS = (
     " move would look the same"
 )
 
+_FALLS_AT_START = (
+    "it comes or goes at the start of each run, where friction is another one, too: friction that"
+    " changes from move to move would look the same"
+)
+
+_HALF_OF_FALL = 0.5
+"""Greatest share of a change of friction between the moves of a pair that is in the load."""
+
 _AT_START = "it is there only at the start of runs, where friction after a rest would look the same"
 
 
@@ -77,7 +85,7 @@ def doubtful_change(fit: EffectFit, problem: Problem) -> str:
         The joint's rows.
     """
     if fit.effect is PAYLOAD_CHANGE:
-        return _in_first_pairs(_there(fit, problem), problem)
+        return _in_first_pairs(_there(fit, problem), problem) or _falls_at_start(fit, problem)
     if fit.effect is not STEP_CHANGE:
         return ""
     there = _there(fit, problem)
@@ -174,6 +182,24 @@ def _in_first_pairs(there: Flags, problem: Problem) -> str:
         if first >= max(_SEVERAL, _FIRST_AFTER_RESTS * int(one.sum())):
             return _IN_FIRST_PAIRS
     return ""
+
+
+def _falls_at_start(fit: EffectFit, problem: Problem) -> str:
+    """Return why a payload may be friction that falls as runs begin; empty if it is not.
+
+    Friction that is so different there that half of what it changes by may be the whole change of
+    the load, where this comes or goes after the first pairs of several runs.
+    """
+    there = _there(fit, problem)
+    runs = [problem.layout.run == one for one in np.unique(problem.layout.run)]
+    several = sum(bool(there[own].any() and not there[own].all()) for own in runs) >= _SEVERAL
+    if not several or not _at_start_of_runs(there, problem):
+        return ""
+    load = problem.basis(fit.effect, fit.shape).load @ fit.coefficients
+    change = float(np.sqrt(np.mean(np.square(load[there[problem.layout.row_pair]]))))
+    friction = problem.layout.means(problem.friction_misfit[:, np.newaxis])[:, 0]
+    fall = abs(float(np.mean(friction[~there])) - float(np.mean(friction[there])))
+    return _FALLS_AT_START if change < _HALF_OF_FALL * fall else ""
 
 
 def _at_start_of_runs(there: Flags, problem: Problem) -> str:
