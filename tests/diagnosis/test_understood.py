@@ -224,9 +224,11 @@ def test_what_is_there_in_the_coldest_pairs_alone_may_be_a_part_of_the_temperatu
 def test_structure_of_a_tenth_of_a_cause_along_its_axes_is_the_error_of_its_form(
     size, axes, expected
 ):
-    cause = SimpleNamespace(size=3.0, fit=SimpleNamespace(effect=BY_NAME["load_temperature"]))
+    fit = SimpleNamespace(effect=BY_NAME["load_temperature"])
     structure = SimpleNamespace(size=size, axes=axes, channel="friction")
-    assert _is_form_of(cause, structure) is expected
+    assert _is_form_of(SimpleNamespace(size=3.0, visible=1.5, fit=fit), structure) is expected
+    # it is more than the base leaves of a cause of which it takes most
+    assert not _is_form_of(SimpleNamespace(size=3.0, visible=0.15, fit=fit), structure)
 
 
 def test_structure_of_the_load_is_the_same_for_loads_to_either_side():

@@ -16,7 +16,8 @@ the cause is not understood."""
 
 _FORM = 0.1
 """Structure along the axes of a cause that is smaller than this share of it is what its equation
-does not match of its form."""
+does not match of its form. Where the base takes most of a cause, that may be more than what is left
+of it: then the cause is not understood."""
 
 _MOST_BESIDE = 1.0
 """Structure along any axis that is greater than this share of a change of friction says the same:
@@ -95,7 +96,7 @@ def _is_form_of(cause: Cause, unnamed: Structure) -> bool:
     along = {_AXES.get(one, one) for one in effect.needs}
     own = {_AXES.get(one, one) for one in unnamed.axes} <= along
     same = not effect.measurement and effect.channel == unnamed.channel
-    return same and own and unnamed.size < _FORM * cause.size
+    return same and own and unnamed.size < min(_FORM * cause.size, MOST_LEFT * cause.visible)
 
 
 def is_part(fit: EffectFit, visible: float, unnamed: Structure, problem: Problem) -> bool:
