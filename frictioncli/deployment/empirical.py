@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.empirical.form_columns import BUMP
+from frictioncli.diagnosis.empirical.form_columns import BUMP, UNEVEN_BUMP
 from frictioncli.diagnosis.empirical.term import (
     FADING,
     EmpiricalTerm,
@@ -206,16 +206,18 @@ def _series_lines(one: SmoothFunction, term: EmpiricalTerm) -> list[str]:
 
 def _form_lines(form: FormFunction, channel: str) -> list[str]:
     """Return the lines that add a form in one channel."""
-    if form.kind == BUMP:
+    if form.kind in (BUMP, UNEVEN_BUMP):
         c, w, lag = (repr(form.shape[name]) for name in ("centre", "width", "lag"))
-        sign = "+" if channel == "friction" else "-"
         ahead, behind = (
             f"exp(-0.5 * pow((position {way} speed * {lag} - ({c})) / {w}, 2.0))" for way in "-+"
         )
-        height = form.coefficients["peak"] / 2
+        heights = list(form.coefficients.values())
+        forward, reverse = heights[0] / 2, heights[-1] / 2
+        if channel == "load":
+            forward, reverse = form.sign * forward, -form.sign * reverse
         return [
-            f"    torque += ({height!r}) * ({ahead}",
-            f"               {sign} {behind});",
+            f"    torque += ({forward!r}) * {ahead}",
+            f"            + ({reverse!r}) * {behind};",
         ]
     if form.channel != channel:
         return []

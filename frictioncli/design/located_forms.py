@@ -24,7 +24,8 @@ from dataclasses import replace
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.empirical.forms import ShapeAxis, forms_of
+from frictioncli.diagnosis.empirical.form import ShapeAxis
+from frictioncli.diagnosis.empirical.forms import forms_of
 from frictioncli.diagnosis.empirical.term import INPUTS, FormFunction, in_coordinates
 from frictioncli.diagnosis.noise.cosine_series import Range, coordinate
 from frictioncli.effects.base import Basis, EffectTable

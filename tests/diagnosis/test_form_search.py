@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
+from frictioncli.diagnosis.empirical.form import is_special_case
 from frictioncli.diagnosis.empirical.form_search import LEAST_SCORE, FormSearch
-from frictioncli.diagnosis.empirical.forms import forms_of, is_special_case
+from frictioncli.diagnosis.empirical.forms import forms_of
 from frictioncli.diagnosis.empirical.random_functions import (
     function_of_form,
     functions_of,

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping
 
-from frictioncli.diagnosis.empirical.form_columns import BUMP
+from frictioncli.diagnosis.empirical.form_columns import BUMP, UNEVEN_BUMP
 from frictioncli.diagnosis.empirical.term import FormFunction
 from frictioncli.wording import number_text
 
@@ -91,7 +91,7 @@ def experiment(form: FormFunction, load_unit: str = "N·m") -> str:
         Unit of load.
     """
     axis = form.axes[0]
-    if form.kind in ("peak", BUMP):
+    if form.kind in ("peak", BUMP, UNEVEN_BUMP):
         centre, width = form.shape["centre"], form.shape["width"]
         if axis == "speed":
             low, high = (_number(centre * math.exp(way * 2 * width)) for way in (-1, 1))
@@ -170,9 +170,26 @@ def _peak(form: FormFunction, unit: str) -> str:
     else:
         wide = f"{number_text(shape['width'], 2)} {_UNITS[axis]} wide (standard deviation)"
     text = f"a {what} of {_of(form)} of {_size(height, unit)} {place}, {wide}"
-    if _is_late(form):
-        text += f", in a torque that is logged {number_text(1e3 * shape['lag'], 2)} ms late"
-    return text
+    return text + _late(form)
+
+
+def _late(form: FormFunction) -> str:
+    """Return by how much a form's torque is late; empty if it is not."""
+    late = (
+        f", in a torque that is logged {number_text(1e3 * form.shape.get('lag', 0.0), 2)} ms late"
+    )
+    return late if _is_late(form) else ""
+
+
+def _uneven_bump(form: FormFunction, unit: str) -> str:
+    shape = form.shape
+    sizes = [form.coefficients[name] for name in ("forward", "reverse")]
+    forward, reverse = (f"{_size(one, unit)} {'more' if one > 0 else 'less'}" for one in sizes)
+    wide = f"{number_text(shape['width'], 2)} deg wide (standard deviation)"
+    return (
+        f"friction that is another one in each direction at {_number(shape['centre'])} deg:"
+        f" {forward} in forward motion, {reverse} in reverse, {wide}{_late(form)}"
+    )
 
 
 def _bend(form: FormFunction, unit: str) -> str:
@@ -239,6 +256,7 @@ def _turning_wave(form: FormFunction, unit: str) -> str:
 
 _WORDS: Mapping[str, Callable[[FormFunction, str], str]] = {
     BUMP: _peak,
+    UNEVEN_BUMP: _uneven_bump,
     "peak": _peak,
     "bend_above": _bend,
     "bend_below": _bend,

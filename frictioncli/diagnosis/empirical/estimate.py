@@ -41,8 +41,9 @@ from frictioncli.diagnosis.empirical.estimated import (
     without_term,
 )
 from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
+from frictioncli.diagnosis.empirical.form import Form
 from frictioncli.diagnosis.empirical.form_search import LEAST_SCORE, FormSearch, Noises
-from frictioncli.diagnosis.empirical.forms import Form, forms_of
+from frictioncli.diagnosis.empirical.forms import forms_of
 from frictioncli.diagnosis.empirical.located import Located, located
 from frictioncli.diagnosis.empirical.normal_equations import Misfits, NormalEquations
 from frictioncli.diagnosis.empirical.random_functions import (
@@ -177,7 +178,7 @@ def empirical_term(
     search = FormSearch.of(step, fitted, small, misfit)
     best, before = free, free.gain.before
     without, evident = np.inf, False
-    candidates = forms_of(_varying(problem))
+    candidates = forms_of(_varying(problem), problem.counted)
     if structure is not None:
         candidates = [one for one in candidates if _is_along(one, structure)]
     number, accepted = len(candidates), []

@@ -13,12 +13,20 @@ Shape = Mapping[str, float]
 BUMP = "bump"
 """Form that shows in both channels, because the torque is logged late."""
 
+UNEVEN_BUMP = "uneven_bump"
+"""Form of the same that is not as high in both directions, which shows in both channels, too."""
+
 MIDDLE_TEMPERATURE = 40.0
 """Temperature from which linear forms count. [°C]"""
 
 
 def columns_of(
-    kind: str, axes: tuple[str, ...], channel: str, table: EffectTable, shape: Shape
+    kind: str,
+    axes: tuple[str, ...],
+    channel: str,
+    table: EffectTable,
+    shape: Shape,
+    sign: float = 1.0,
 ) -> Basis:
     """Return the columns of a form in both channels at rows, shape (rows, coefficients) each.
 
@@ -34,9 +42,14 @@ def columns_of(
         The rows.
     shape : mapping of str to float
         The shape parameters.
+    sign : float, optional
+        Sign convention of the torques: +1 where forward is load plus friction, else -1.
     """
-    if kind == BUMP:
-        return _bump(table, shape)
+    if kind in (BUMP, UNEVEN_BUMP):
+        of_directions = _of_directions(table, shape, sign)
+        if kind == UNEVEN_BUMP:
+            return of_directions
+        return Basis(*(one.sum(axis=1, keepdims=True) for one in of_directions))
     own = COLUMNS[kind](axes, table, shape)
     zeros = np.zeros_like(own)
     return Basis(own, zeros) if channel == "friction" else Basis(zeros, own)
@@ -46,14 +59,21 @@ def _peak_columns(axes: tuple[str, ...], table: EffectTable, shape: Shape) -> Ar
     return np.exp(-np.square(_away(axes, table, shape)) / 2)[:, np.newaxis]
 
 
-def _bump(table: EffectTable, shape: Shape) -> Basis:
-    """Return a peak at one angle that the log shows late: forward later, in reverse earlier."""
+def _of_directions(table: EffectTable, shape: Shape, sign: float) -> Basis:
+    """Return a peak at one angle, forward and in reverse, shape (rows, 2) per channel.
+
+    The log shows it late: forward later, in reverse earlier. Friction is half the difference of
+    the torques of both directions, load half their sum.
+    """
     moved = table.speed * shape["lag"]
     forward, reverse = (
         np.exp(-np.square((table.position - way * moved - shape["centre"]) / shape["width"]) / 2)
         for way in (1, -1)
     )
-    return Basis((forward + reverse)[:, np.newaxis] / 2, (forward - reverse)[:, np.newaxis] / 2)
+    return Basis(
+        np.column_stack([forward, reverse]) / 2,
+        sign * np.column_stack([forward, -reverse]) / 2,
+    )
 
 
 def _above(axes: tuple[str, ...], table: EffectTable, shape: Shape) -> Array:

@@ -23,8 +23,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
+from frictioncli.diagnosis.empirical.form import Form, is_special_case
 from frictioncli.diagnosis.empirical.form_columns import Shape
-from frictioncli.diagnosis.empirical.forms import Form, is_special_case
 from frictioncli.diagnosis.empirical.random_functions import Function
 from frictioncli.diagnosis.empirical.weighted_misfit import Explained, WeightedMisfit
 from frictioncli.diagnosis.fit.columns import basis_columns

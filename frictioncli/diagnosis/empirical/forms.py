@@ -9,15 +9,14 @@ the range that was measured, and is as wide as a bin or two, or as a quarter of 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from itertools import product
+from dataclasses import replace
 
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.empirical.form_columns import BUMP, Shape, columns_of
+from frictioncli.diagnosis.empirical.form import Form, ShapeAxis
+from frictioncli.diagnosis.empirical.form_columns import BUMP, UNEVEN_BUMP
 from frictioncli.diagnosis.noise.cosine_series import Range
-from frictioncli.effects.base import Basis, EffectTable
 
 UNITS = {"position": "deg", "speed": "deg/s", "temperature": "°C", "load": "N·m"}
 """Units of the quantities."""
@@ -66,97 +65,7 @@ _EXPONENTS = (0.25, 0.5, 0.75, 1.25, 1.5, 2.0, 2.5, 3.0)
 """Powers of the load."""
 
 
-@dataclass(frozen=True, slots=True)
-class ShapeAxis:
-    """A shape parameter of a form.
-
-    Attributes
-    ----------
-    name, unit : str
-        Its name and unit.
-    values : tuple of float
-        Values that are tried first, ascending; it stays between the ends.
-    logarithmic : bool
-        Whether steps of it are ratios.
-    """
-
-    name: str
-    unit: str
-    values: tuple[float, ...]
-    logarithmic: bool = False
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Form:
-    """A form of structure.
-
-    Attributes
-    ----------
-    kind : str
-        Its name, :data:`BUMP` or one of
-        :data:`frictioncli.diagnosis.empirical.form_columns.COLUMNS`.
-    axes : tuple of str
-        What it depends on.
-    channel : {"friction", "load"}
-        The torque in which it shows.
-    shape : tuple of ShapeAxis
-        Its shape parameters.
-    coefficients : tuple of str
-        Names of the coefficients, all in units of torque.
-    formula : str
-        The formula.
-    since : int
-        Number of the run from which on it is there.
-    """
-
-    kind: str
-    axes: tuple[str, ...]
-    channel: str
-    shape: tuple[ShapeAxis, ...]
-    coefficients: tuple[str, ...]
-    formula: str
-    since: int = 0
-
-    @property
-    def parameters(self) -> int:
-        """Number of all parameters."""
-        return len(self.shape) + len(self.coefficients) + (self.since > 0)
-
-    def shapes(self) -> list[dict[str, float]]:
-        """Return the shapes that are tried first."""
-        names = [one.name for one in self.shape]
-        return [
-            dict(zip(names, values, strict=True))
-            for values in product(*(one.values for one in self.shape))
-        ]
-
-    def columns(self, table: EffectTable, shape: Shape) -> Basis:
-        """Return the columns of both channels at rows, shape (rows, coefficients) each.
-
-        Parameters
-        ----------
-        table : EffectTable
-            The rows.
-        shape : mapping of str to float
-            The shape parameters.
-        """
-        there = (table.run >= self.since)[:, np.newaxis]
-        both = columns_of(self.kind, self.axes, self.channel, table, shape)
-        return Basis(*(there * one for one in both)) if self.since else both
-
-
-def is_special_case(one: Form, other: Form) -> bool:
-    """Return whether a form is another one with some of its parameters zero.
-
-    Parameters
-    ----------
-    one, other : Form
-        The forms.
-    """
-    return (one.kind, other.kind) == ("peak", "moving_peak") and set(one.axes) <= set(other.axes)
-
-
-def forms_of(ranges: Mapping[str, Range]) -> list[Form]:
+def forms_of(ranges: Mapping[str, Range], sign: float = 1.0) -> list[Form]:
     """Return the forms that data can show, for the ranges that were measured.
 
     Parameters
@@ -164,13 +73,16 @@ def forms_of(ranges: Mapping[str, Range]) -> list[Form]:
     ranges : mapping of str to (float, float)
         Ranges of ``position`` [deg], ``speed`` [deg/s], ``temperature`` [°C] and amount of the
         ``load`` [N·m], of those that vary.
+    sign : float, optional
+        Sign convention of the torques: +1 where forward is load plus friction, else -1.
     """
     found: list[Form] = []
     for axis, within in ranges.items():
         found.append(_peak(axis, "friction", within))
         if axis == "position":
             (plain,) = found
-            found = [_late(plain)]
+            late = replace(_late(plain), sign=sign)
+            found = [late, _uneven(plain, late)]
         if axis != "load":
             found.append(_peak(axis, "load", within))
         # what touches at an angle, as an end stop or a hose, may carry as well as rub
@@ -266,6 +178,20 @@ def _late(plain: Form) -> Form:
         shape=(*plain.shape, ShapeAxis("lag", "s", _LAGS)),
         coefficients=plain.coefficients,
         formula=f"{plain.formula}, at q - v lag forward and at q + v lag in reverse",
+    )
+
+
+def _uneven(plain: Form, late: Form) -> Form:
+    """Return a peak at one angle that is not as high in both directions of motion.
+
+    As of a tooth with one damaged flank.
+    """
+    return replace(
+        late,
+        kind=UNEVEN_BUMP,
+        coefficients=("forward", "reverse"),
+        formula=plain.formula.replace("peak", "height", 1)
+        + ", height: forward at q - v lag in forward motion, reverse at q + v lag in reverse",
     )
 
 

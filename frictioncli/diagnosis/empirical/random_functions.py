@@ -9,8 +9,8 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.gravity_document import gravity_document
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.empirical.fitted_columns import FittedColumns
+from frictioncli.diagnosis.empirical.form import Form
 from frictioncli.diagnosis.empirical.form_columns import Shape
-from frictioncli.diagnosis.empirical.forms import Form
 from frictioncli.diagnosis.empirical.term import (
     EmpiricalTerm,
     FormFunction,
@@ -184,6 +184,7 @@ def term_of(problem: Problem, functions: Sequence[Function], coefficients: Array
                 coefficients=dict(zip(form.coefficients, values, strict=True)),
                 formula=form.formula,
                 since=problem.run_names[form.since] if form.since else "",
+                sign=form.sign,
             )
         )
     friction, gravity = np.split(-taken, [len(problem.names)])

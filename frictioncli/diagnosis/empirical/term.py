@@ -88,6 +88,8 @@ class FormFunction:
         Its formula: q in deg, v in deg/s, T in °C, L in N·m.
     since : str
         The run from which on it is there; empty where it always is.
+    sign : float
+        Sign convention of the torques: +1 where forward is load plus friction, else -1.
     """
 
     kind: str
@@ -97,6 +99,7 @@ class FormFunction:
     coefficients: Mapping[str, float]
     formula: str
     since: str = ""
+    sign: float = 1.0
 
     def at(self, table: EffectTable) -> Basis:
         """Return the form in both channels at some rows, shape (rows,) each [torque unit].
@@ -106,7 +109,7 @@ class FormFunction:
         table : EffectTable
             The rows.
         """
-        columns = columns_of(self.kind, self.axes, self.channel, table, self.shape)
+        columns = columns_of(self.kind, self.axes, self.channel, table, self.shape, self.sign)
         coefficients = np.array(list(self.coefficients.values()))
         return Basis(columns.friction @ coefficients, columns.load @ coefficients)
 

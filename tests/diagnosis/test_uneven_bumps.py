@@ -1,0 +1,76 @@
+"""A bump that one direction of motion has, and the other one less of, or not at all."""
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.empirical.describe import described
+from frictioncli.diagnosis.empirical.estimate import empirical_term
+from frictioncli.diagnosis.empirical.form import is_special_case
+from frictioncli.diagnosis.empirical.forms import forms_of
+from frictioncli.diagnosis.empirical.term import FormFunction, ranges_seen
+from frictioncli.diagnosis.fit.extension import extend
+from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.step import Step
+from tests.diagnosis.dense_noise import problem
+
+SHAPE = {"centre": 70.0, "width": 8.0, "lag": 0.05}
+
+
+def at(position, height):
+    return height * np.exp(-np.square((position - SHAPE["centre"]) / SHAPE["width"]) / 2)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(("kind", "heights"), [("uneven_bump", (3.0, -0.5)), ("bump", (2.0, 2.0))])
+def test_it_adds_what_the_separation_makes_of_torques_logged_late(kind, heights, sign):
+    table = problem(1).table
+    names = ("forward", "reverse") if kind == "uneven_bump" else ("peak",)
+    form = FormFunction(
+        kind=kind,
+        axes=("position",),
+        channel="friction",
+        shape=SHAPE,
+        coefficients=dict(zip(names, heights, strict=False)),
+        formula="",
+        sign=sign,
+    )
+    moved = SHAPE["lag"] * table.speed
+    # friction acts against the motion: in the log it has this sign forward, the other in reverse
+    forward = sign * at(table.position - moved, heights[0])
+    reverse = -sign * at(table.position + moved, heights[1])
+    added = form.at(table)
+    np.testing.assert_allclose(added.friction, sign * (forward - reverse) / 2, atol=1e-12)
+    np.testing.assert_allclose(added.load, (forward + reverse) / 2, atol=1e-12)
+
+
+def test_it_is_found_and_described_with_both_heights():
+    """A tooth that is damaged on one flank: in the pairs half of it is friction, half load."""
+    data = problem(
+        3,
+        every=16,
+        friction=lambda rows: at(rows.position, 4.0) / 2,
+        load=lambda rows: at(rows.position, 4.0) / 2,
+    )
+    step = Step.of(Precomputed.of(data), [])
+    beside = extend(data, step.predicting_fit(), [])
+    term = empirical_term(step, (data, beside), None, margin=0.2, floor=0.3, seed=0).term
+    (form,) = term.forms
+    assert form.kind == "uneven_bump"
+    assert form.shape["centre"] == pytest.approx(70.0, abs=1.0)
+    assert form.coefficients["forward"] == pytest.approx(4.0, rel=0.15)
+    assert form.coefficients["reverse"] == pytest.approx(0.0, abs=0.6)
+    text = described(form, "N·m")
+    assert text.startswith("friction that is another one in each direction at ")
+    assert "more in forward motion" in text
+
+
+def test_a_bump_and_a_load_at_an_angle_are_its_special_cases():
+    """Neither is in doubt because of it: as high in both directions, or with opposite signs."""
+    forms = forms_of(ranges_seen(problem(1).table))
+    (uneven,) = (one for one in forms if one.kind == "uneven_bump")
+    special = [one for one in forms if is_special_case(one, uneven)]
+    assert [(one.kind, one.axes, one.channel) for one in special] == [
+        ("bump", ("position",), "friction"),
+        ("peak", ("position",), "load"),
+    ]
+    assert not any(is_special_case(uneven, one) for one in forms)
