@@ -13,8 +13,9 @@ from frictioncli.diagnosis.documents.extended_document import ExtendedDocument, 
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document, extended_document
 from frictioncli.diagnosis.documents.structure_record import structure_record
 from frictioncli.diagnosis.documents.text import verdict_text
-from frictioncli.diagnosis.empirical.describe import described, experiment
+from frictioncli.diagnosis.empirical.describe import described
 from frictioncli.diagnosis.empirical.estimate import empirical_term
+from frictioncli.diagnosis.empirical.next_experiment import experiment
 from frictioncli.diagnosis.empirical.on_new_run import structure_on_new_run
 from frictioncli.diagnosis.empirical.random_functions import functions_of
 from frictioncli.diagnosis.empirical.term import (

@@ -183,20 +183,28 @@ def gain_record(
         ci95=gain.interval,
         noise_floor=gain.floor,
         ranges=found.term.ranges,
-        parts=tuple(_located_record(one, units, delay_is_stated) for one in found.parts),
+        parts=tuple(_located_record(one, units, found, delay_is_stated) for one in found.parts),
     )
 
 
-def _located_record(part: Located, units: TorqueUnits, delay_is_stated: bool) -> LocatedRecord:
-    form = part.form
+def _located_record(
+    part: Located, units: TorqueUnits, found: Empirical, delay_is_stated: bool
+) -> LocatedRecord:
+    form, words, largest = part.form, None, found.parts[0]
+    if form is not None:
+        words = described(
+            form,
+            *units,
+            delay_is_stated=delay_is_stated,
+            ranges=found.term.ranges,
+            beside=None if part is largest else largest.form,
+        )
     return LocatedRecord(
         axes=part.axes,
         channel=part.channel,
         size=part.size,
         ci95=part.interval,
         share=part.share,
-        description=None
-        if form is None
-        else described(form, *units, delay_is_stated=delay_is_stated),
+        description=words,
         formula=None if form is None else formula_with_numbers(form),
     )

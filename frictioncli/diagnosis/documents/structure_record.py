@@ -9,7 +9,7 @@ from frictioncli.diagnosis.documents.empirical_record import (
     gain_record,
 )
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
-from frictioncli.diagnosis.empirical.describe import experiment
+from frictioncli.diagnosis.empirical.next_experiment import experiment
 from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.search.axis_columns import friction_tells_load, load_over_angle
 from frictioncli.diagnosis.search.confounded import has_temperature
@@ -39,7 +39,7 @@ def structure_record(diagnosis: Diagnosis) -> StructureRecord | None:
             axis=(*forms[0].axes, *further, *in_time),
             channel=forms[0].channel,
             description=f"{_in_words(forms)}{_by_an_amount(further)}{only_on}.",
-            formula=" + ".join(one.formula or "" for one in forms),
+            formula="; plus ".join(one.formula or "" for one in forms),
             size=forms[0].size,
             ci95=forms[0].ci95,
         )

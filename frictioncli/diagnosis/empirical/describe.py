@@ -2,9 +2,15 @@
 
 import math
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
-from frictioncli.diagnosis.empirical.form_columns import BUMP, UNEVEN_BUMP
+from frictioncli.diagnosis.empirical.form_columns import (
+    BUMP,
+    MIDDLE_TEMPERATURE,
+    UNEVEN_BUMP,
+)
 from frictioncli.diagnosis.empirical.term import FormFunction
+from frictioncli.diagnosis.noise.cosine_series import Range
 from frictioncli.wording import number_text
 
 _PLACES = {
@@ -28,9 +34,24 @@ _OWN_DELAY = (
 )
 """What is said of the delay of a form where the delay of the log is stated, too."""
 
+_MAY_BE_SHAPE = " (so near that it may be a part of the shape of the former)"
+"""What is said of a form that may be what another one misses."""
+
+
+_NEAR = 4.0
+"""Distance from a form, in widths of it, up to which another one may be a part of its shape."""
+
+_NO_RANGES: Mapping[str, Range] = MappingProxyType({})
+
 
 def described(
-    form: FormFunction, unit: str, load_unit: str = "N·m", *, delay_is_stated: bool = False
+    form: FormFunction,
+    unit: str,
+    load_unit: str = "N·m",
+    *,
+    delay_is_stated: bool = False,
+    ranges: Mapping[str, Range] = _NO_RANGES,
+    beside: FormFunction | None = None,
 ) -> str:
     """Return a form in words, as "a bump of friction of 5.5 N·m at 86 deg, 6.8 deg wide".
 
@@ -44,6 +65,10 @@ def described(
         Units of torque and of load.
     delay_is_stated : bool, optional
         Whether the delay of the log is stated besides, which is not that of a form.
+    ranges : mapping of str to (float, float), optional
+        Ranges that were measured: what a form is at a temperature or a load is said within these.
+    beside : FormFunction, optional
+        A larger form, of which this one may be what it misses of the shape of its law.
 
     Examples
     --------
@@ -61,7 +86,28 @@ def described(
     """
     since = f", since run {form.since}" if form.since else ""
     own = _OWN_DELAY if delay_is_stated and _is_late(form) else ""
-    return _WORDS[form.kind](form, unit).replace(_LOAD_UNIT, load_unit) + own + since
+    near = _MAY_BE_SHAPE if beside is not None and is_near(form, beside) else ""
+    text = _WORDS[form.kind](form, unit, ranges).replace(_LOAD_UNIT, load_unit)
+    return text + own + since + near
+
+
+def is_near(form: FormFunction, other: FormFunction) -> bool:
+    """Return whether a form may be what another one, of the same quantity, misses of its shape.
+
+    No law has exactly the shape of a form, and what is left at the flanks looks like another one.
+
+    Parameters
+    ----------
+    form, other : FormFunction
+        The forms.
+    """
+    width, centre = other.shape.get("width"), other.shape.get("centre")
+    place = form.shape.get("centre", form.shape.get("start"))
+    alike = (form.axes, form.channel, form.since) == (other.axes, other.channel, other.since)
+    if not alike or width is None or centre is None or place is None or len(form.axes) > 1:
+        return False
+    away = math.log(place / centre) if form.axes == ("speed",) else place - centre
+    return abs(away) <= _NEAR * width
 
 
 def _is_late(form: FormFunction) -> bool:
@@ -77,71 +123,15 @@ def formula_with_numbers(form: FormFunction) -> str:
         The form with its parameters.
     """
     values = {**form.shape, **form.coefficients}
-    return f"{form.formula}; {', '.join(f'{name} = {one:.5g}' for name, one in values.items())}"
+    since = f", from run {form.since} on" if form.since else ""
+    numbers = ", ".join(f"{name} = {one:.5g}" for name, one in values.items())
+    return f"{form.formula}; {numbers}{since}"
 
 
-def experiment(form: FormFunction, load_unit: str = "N·m") -> str:
-    """Return what to measure next to learn what a form is.
-
-    Parameters
-    ----------
-    form : FormFunction
-        The form with its parameters.
-    load_unit : str, optional
-        Unit of load.
-    """
-    axis = form.axes[0]
-    if form.kind in ("peak", BUMP, UNEVEN_BUMP):
-        centre, width = form.shape["centre"], form.shape["width"]
-        if axis == "speed":
-            low, high = (_number(centre * math.exp(way * 2 * width)) for way in (-1, 1))
-        else:
-            low, high = (_number(centre + way * 3 * width) for way in (-1, 1))
-        bins = number_text(width / 2, 2)
-        return _AROUND[axis].format(low=low, high=high, bins=bins, load=load_unit)
-    return _AT_STEP[axis] if form.kind == "step" else _NEXT[form.kind]
-
-
-_AROUND = {
-    "position": "Move through {low} to {high} deg at three speeds, some of them slow, cold and"
-    " warm, with and without a payload, in bins of {bins} deg or less: damage of gear or bearing"
-    " stays at its angle at all speeds; an effect of load grows with the load; what a gripper"
-    " carries on some moves only is told apart where the log has a column payload.",
-    "speed": "Measure at six speeds or more from {low} to {high} deg/s in random order, cold and"
-    " warm: a resonance stays at its speed; a change of lubrication shifts with temperature.",
-    "temperature": "Go through {low} to {high} °C twice, heating and cooling, at another rate and"
-    " on another day: an effect of temperature returns at the same temperature; an effect of time"
-    " does not.",
-    "load": "Measure with another payload, or in another pose, so that loads of {low} to {high}"
-    " {load} occur at other angles: an effect of load moves with them.",
-}
-"""What to measure around a peak."""
-
-_AT_STEP = {
-    "position": "Move across this angle at three speeds, some of them slow, cold and warm, with and"
-    " without a payload, and with anything that may touch there (a hose, a cover) taken off.",
-    "speed": "Measure at six speeds or more on both sides of this one, in random order, cold and"
-    " warm, with other gains of the servo if these change there.",
-    "temperature": "Go through this temperature twice, heating and cooling, at another rate and on"
-    " another day, with anything that switches there (a fan, a heater) once on and once off.",
-    "load": "Measure with another payload, or in another pose, so that this load occurs at another"
-    " angle: an effect of load moves with it.",
-}
-"""What to measure about a step."""
-
-_BEND = "Measure more values on both sides of the bend, in random order, on another day."
-
-_NEXT = {
-    "bend_above": _BEND,
-    "bend_below": _BEND,
-    "lifting": "Measure with two payloads: a loss in lifting grows with the load to its power;"
-    " an error of the mass grows in proportion.",
-    "moving_peak": "Measure at six speeds or more around the peak, at three constant temperatures.",
-    "warm_wave": "Move through the whole stroke at one slow speed, at three constant temperatures.",
-    "turning_wave": "Move through the whole stroke at six speeds or more, in random order, at one"
-    " temperature.",
-}
-"""What to measure about other forms."""
+def _within(usual: float, axis: str, ranges: Mapping[str, Range]) -> float:
+    """Return a usual value of a quantity, or the next one that was measured."""
+    low, high = ranges.get(axis, (usual, usual))
+    return min(max(usual, low), high)
 
 
 def _of(form: FormFunction) -> str:
@@ -160,7 +150,7 @@ def _number(value: float) -> str:
     return number_text(value, 3)
 
 
-def _peak(form: FormFunction, unit: str) -> str:
+def _peak(form: FormFunction, unit: str, _: Mapping[str, Range]) -> str:
     (axis,), shape = form.axes, form.shape
     height = form.coefficients["peak"]
     what = "dent" if height < 0 else "bump" if axis == "position" else "peak"
@@ -181,7 +171,7 @@ def _late(form: FormFunction) -> str:
     return late if _is_late(form) else ""
 
 
-def _uneven_bump(form: FormFunction, unit: str) -> str:
+def _uneven_bump(form: FormFunction, unit: str, _: Mapping[str, Range]) -> str:
     shape = form.shape
     sizes = [form.coefficients[name] for name in ("forward", "reverse")]
     forward, reverse = (f"{_size(one, unit)} {'more' if one > 0 else 'less'}" for one in sizes)
@@ -192,7 +182,7 @@ def _uneven_bump(form: FormFunction, unit: str) -> str:
     )
 
 
-def _bend(form: FormFunction, unit: str) -> str:
+def _bend(form: FormFunction, unit: str, _: Mapping[str, Range]) -> str:
     (axis,), above = form.axes, form.kind == "bend_above"
     slope = form.coefficients["per_10"]
     # below the bend a positive coefficient falls towards it
@@ -201,7 +191,7 @@ def _bend(form: FormFunction, unit: str) -> str:
     return f"{_that(form)} {way} by {_size(slope, unit)} per 10 {_UNITS[axis]} {where}"
 
 
-def _step(form: FormFunction, unit: str) -> str:
+def _step(form: FormFunction, unit: str, _: Mapping[str, Range]) -> str:
     (axis,), step, width = form.axes, form.coefficients["step"], form.shape["width"]
     within = f"{number_text(4 * width, 2)} {_UNITS[axis]}"
     if axis == "speed":
@@ -211,23 +201,27 @@ def _step(form: FormFunction, unit: str) -> str:
     return f"{_that(form)} {way} by {_size(step, unit)} {place}, within about {within}"
 
 
-def _lifting(form: FormFunction, unit: str) -> str:
+def _lifting(form: FormFunction, unit: str, ranges: Mapping[str, Range]) -> str:
     torque, exponent = form.coefficients["torque"], form.shape["exponent"]
     more = "more" if torque > 0 else "less"
-    power = number_text(exponent, 2)
+    power, load = number_text(exponent, 2), _within(50.0, "load", ranges)
+    at_load = torque * (load / 50.0) ** exponent
     return (
-        f"lifting that takes {_size(torque, unit)} {more} at a load of 50 {_LOAD_UNIT}, and"
+        f"lifting that takes {_size(at_load, unit)} {more} at a load of {_number(load)}"
+        f" {_LOAD_UNIT}, and"
         f" lowering that gives as much less back, as the load to the power {power}"
     )
 
 
-def _moving_peak(form: FormFunction, unit: str) -> str:
+def _moving_peak(form: FormFunction, unit: str, ranges: Mapping[str, Range]) -> str:
     shape, height = form.shape, form.coefficients["peak"]
+    warm = _within(MIDDLE_TEMPERATURE, "temperature", ranges)
+    centre = shape["centre"] * math.exp(shape["shift"] * (warm - MIDDLE_TEMPERATURE))
     moves = 100 * math.expm1(shape["shift"])
     way = "up" if moves > 0 else "down"
     return (
         f"a {'dent' if height < 0 else 'peak'} of friction of {_size(height, unit)} at"
-        f" {_number(shape['centre'])} deg/s (at 40 °C), a factor of"
+        f" {_number(centre)} deg/s (at {_number(warm)} °C), a factor of"
         f" {number_text(math.exp(shape['width']), 2)} wide (standard deviation), which moves {way}"
         f" by {number_text(abs(moves), 2)} % of its speed per °C"
     )
@@ -237,7 +231,7 @@ def _times(order: float) -> str:
     return "once" if order == 1 else f"{order:g} times"
 
 
-def _warm_wave(form: FormFunction, unit: str) -> str:
+def _warm_wave(form: FormFunction, unit: str, _: Mapping[str, Range]) -> str:
     growth = math.hypot(form.coefficients["cosine_per_10K"], form.coefficients["sine_per_10K"])
     return (
         f"friction that goes up and down {_times(form.shape['order'])} per turn, by an"
@@ -245,7 +239,7 @@ def _warm_wave(form: FormFunction, unit: str) -> str:
     )
 
 
-def _turning_wave(form: FormFunction, unit: str) -> str:
+def _turning_wave(form: FormFunction, unit: str, _: Mapping[str, Range]) -> str:
     size = math.hypot(form.coefficients["cosine"], form.coefficients["sine"])
     return (
         f"friction that goes up and down {_times(form.shape['order'])} per turn by up to"
@@ -254,7 +248,7 @@ def _turning_wave(form: FormFunction, unit: str) -> str:
     )
 
 
-_WORDS: Mapping[str, Callable[[FormFunction, str], str]] = {
+_WORDS: Mapping[str, Callable[[FormFunction, str, Mapping[str, Range]], str]] = {
     BUMP: _peak,
     UNEVEN_BUMP: _uneven_bump,
     "peak": _peak,
