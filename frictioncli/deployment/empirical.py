@@ -213,6 +213,9 @@ def _form_lines(form: FormFunction, channel: str) -> list[str]:
         )
         heights = list(form.coefficients.values())
         forward, reverse = heights[0] / 2, heights[-1] / 2
+        if form.channel == "load":
+            # the same torque in both directions is friction with opposite signs
+            forward, reverse = form.sign * forward, -form.sign * reverse
         if channel == "load":
             forward, reverse = form.sign * forward, -form.sign * reverse
         return [

@@ -36,7 +36,7 @@ FORMS = tuple(
         shape={axis.name: axis.values[len(axis.values) // 2] for axis in one.shape},
         coefficients={name: 1.5 - number for number, name in enumerate(one.coefficients)},
         formula=one.formula,
-        sign=-1.0 if one.kind == "uneven_bump" else 1.0,
+        sign=-1.0 if one.kind == "uneven_bump" or one.channel == "load" else 1.0,
     )
     for one in forms_of(RANGES)
 )

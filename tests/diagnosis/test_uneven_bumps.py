@@ -21,14 +21,21 @@ def at(position, height):
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize(("kind", "heights"), [("uneven_bump", (3.0, -0.5)), ("bump", (2.0, 2.0))])
-def test_it_adds_what_the_separation_makes_of_torques_logged_late(kind, heights, sign):
+@pytest.mark.parametrize(
+    ("kind", "channel", "heights"),
+    [
+        ("uneven_bump", "friction", (3.0, -0.5)),
+        ("bump", "friction", (2.0, 2.0)),
+        ("bump", "load", (2.0, 2.0)),
+    ],
+)
+def test_it_adds_what_the_separation_makes_of_torques_logged_late(kind, channel, heights, sign):
     table = problem(1).table
     names = ("forward", "reverse") if kind == "uneven_bump" else ("peak",)
     form = FormFunction(
         kind=kind,
         axes=("position",),
-        channel="friction",
+        channel=channel,
         shape=SHAPE,
         coefficients=dict(zip(names, heights, strict=False)),
         formula="",
@@ -36,8 +43,12 @@ def test_it_adds_what_the_separation_makes_of_torques_logged_late(kind, heights,
     )
     moved = SHAPE["lag"] * table.speed
     # friction acts against the motion: in the log it has this sign forward, the other in reverse
-    forward = sign * at(table.position - moved, heights[0])
-    reverse = -sign * at(table.position + moved, heights[1])
+    forward, reverse = (
+        at(table.position - moved, heights[0]),
+        at(table.position + moved, heights[1]),
+    )
+    if channel == "friction":
+        forward, reverse = sign * forward, -sign * reverse
     added = form.at(table)
     np.testing.assert_allclose(added.friction, sign * (forward - reverse) / 2, atol=1e-12)
     np.testing.assert_allclose(added.load, (forward + reverse) / 2, atol=1e-12)
@@ -72,5 +83,32 @@ def test_a_bump_and_a_load_at_an_angle_are_its_special_cases():
     assert [(one.kind, one.axes, one.channel) for one in special] == [
         ("bump", ("position",), "friction"),
         ("peak", ("position",), "load"),
+        ("bump", ("position",), "load"),
     ]
+    late_load = special[-1]
+    assert is_special_case(special[1], late_load)
+    assert not is_special_case(special[0], late_load)
     assert not any(is_special_case(uneven, one) for one in forms)
+
+
+def test_a_load_at_an_angle_in_a_late_torque_is_one_of_both_directions():
+    """What hangs there pulls in both; that the log is late shows in friction, too."""
+
+    def halves(rows):
+        moved = 0.1 * rows.speed
+        return at(rows.position - moved, 3.0) / 2, at(rows.position + moved, 3.0) / 2
+
+    data = problem(
+        3,
+        every=16,
+        friction=lambda rows: np.subtract(*halves(rows)),
+        load=lambda rows: np.add(*halves(rows)),
+    )
+    step = Step.of(Precomputed.of(data), [])
+    beside = extend(data, step.predicting_fit(), [])
+    term = empirical_term(step, (data, beside), None, margin=0.2, floor=0.3, seed=0).term
+    (form,) = term.forms
+    assert (form.kind, form.channel) == ("bump", "load")
+    assert form.coefficients["peak"] == pytest.approx(3.0, rel=0.15)
+    assert form.shape["lag"] == pytest.approx(0.1, abs=0.02)
+    assert described(form, "N·m").startswith("a bump of the load of ")

@@ -102,6 +102,8 @@ def is_special_case(one: Form, other: Form) -> bool:
     kinds = one.kind, other.kind
     if kinds == ("peak", "moving_peak"):
         return set(one.axes) <= set(other.axes)
-    # the same in both directions, and as much with opposite signs
-    in_both = one.kind == BUMP or (one.channel == "load" and one.axes == ("position",))
-    return other.kind == UNEVEN_BUMP and one.kind in (BUMP, "peak") and in_both
+    # the same in both directions, as friction or as load, and a load that is not late
+    of_load = one.kind == "peak" and one.axes == ("position",) and one.channel == "load"
+    late_load = other.kind == BUMP and other.channel == "load"
+    uneven = other.kind == UNEVEN_BUMP
+    return (one.kind == BUMP and uneven) or (of_load and (late_load or uneven))

@@ -49,7 +49,8 @@ def columns_of(
         of_directions = _of_directions(table, shape, sign)
         if kind == UNEVEN_BUMP:
             return of_directions
-        return Basis(*(one.sum(axis=1, keepdims=True) for one in of_directions))
+        height = np.array([[1.0], [1.0]] if channel == "friction" else [[sign], [-sign]])
+        return Basis(*(one @ height for one in of_directions))
     own = COLUMNS[kind](axes, table, shape)
     zeros = np.zeros_like(own)
     return Basis(own, zeros) if channel == "friction" else Basis(zeros, own)

@@ -84,7 +84,11 @@ def forms_of(ranges: Mapping[str, Range], sign: float = 1.0) -> list[Form]:
             late = replace(_late(plain), sign=sign)
             found = [late, _uneven(plain, late)]
         if axis != "load":
-            found.append(_peak(axis, "load", within))
+            of_load = _peak(axis, "load", within)
+            found += [
+                of_load,
+                *([replace(_late(of_load), sign=sign)] if axis == "position" else []),
+            ]
         # what touches at an angle, as an end stop or a hose, may carry as well as rub
         channels = ("friction", "load") if axis == "position" else ("friction",)
         for channel in channels:
