@@ -207,7 +207,7 @@ def _lifting(form: FormFunction, unit: str, ranges: Mapping[str, Range]) -> str:
     power, load = number_text(exponent, 2), _within(50.0, "load", ranges)
     at_load = torque * (load / 50.0) ** exponent
     return (
-        f"lifting that takes {_size(at_load, unit)} {more} at a load of {_number(load)}"
+        f"lifting that takes {_size(at_load, unit)} {more} at a load of {load:.3g}"
         f" {_LOAD_UNIT}, and"
         f" lowering that gives as much less back, as the load to the power {power}"
     )
@@ -221,7 +221,7 @@ def _moving_peak(form: FormFunction, unit: str, ranges: Mapping[str, Range]) -> 
     way = "up" if moves > 0 else "down"
     return (
         f"a {'dent' if height < 0 else 'peak'} of friction of {_size(height, unit)} at"
-        f" {_number(centre)} deg/s (at {_number(warm)} °C), a factor of"
+        f" {_number(centre)} deg/s (at {warm:.3g} °C), a factor of"
         f" {number_text(math.exp(shape['width']), 2)} wide (standard deviation), which moves {way}"
         f" by {number_text(abs(moves), 2)} % of its speed per °C"
     )
