@@ -41,6 +41,10 @@ _MAY_BE_SHAPE = " (so near that it may be a part of the shape of the former)"
 _NEAR = 4.0
 """Distance from a form, in widths of it, up to which another one may be a part of its shape."""
 
+_MOSTLY = 2.0
+"""Ratio of load to friction from which on torque that differs in both directions is a load: where
+that is larger, friction is, too."""
+
 _NO_RANGES: Mapping[str, Range] = MappingProxyType({})
 
 
@@ -171,11 +175,22 @@ def _late(form: FormFunction) -> str:
     return late if _is_late(form) else ""
 
 
+def _more(value: float, unit: str) -> str:
+    return f"{_size(value, unit)} {'more' if value > 0 else 'less'}"
+
+
 def _uneven_bump(form: FormFunction, unit: str, _: Mapping[str, Range]) -> str:
     shape = form.shape
     sizes = [form.coefficients[name] for name in ("forward", "reverse")]
-    forward, reverse = (f"{_size(one, unit)} {'more' if one > 0 else 'less'}" for one in sizes)
     wide = f"{number_text(shape['width'], 2)} deg wide (standard deviation)"
+    load, friction = form.sign * (sizes[0] - sizes[1]) / 2, sum(sizes) / 2
+    if abs(load) > _MOSTLY * abs(friction):
+        return (
+            f"a {'bump' if load > 0 else 'dent'} of the load of {_size(load, unit)} at"
+            f" {_number(shape['centre'])} deg, {wide}, where friction is"
+            f" {_more(friction, unit)}{_late(form)}"
+        )
+    forward, reverse = (_more(one, unit) for one in sizes)
     return (
         f"friction that is another one in each direction at {_number(shape['centre'])} deg:"
         f" {forward} in forward motion, {reverse} in reverse, {wide}{_late(form)}"

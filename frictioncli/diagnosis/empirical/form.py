@@ -102,8 +102,5 @@ def is_special_case(one: Form, other: Form) -> bool:
     kinds = one.kind, other.kind
     if kinds == ("peak", "moving_peak"):
         return set(one.axes) <= set(other.axes)
-    # the same in both directions, as friction or as load, and a load that is not late
-    of_load = one.kind == "peak" and one.axes == ("position",) and one.channel == "load"
-    late_load = other.kind == BUMP and other.channel == "load"
-    uneven = other.kind == UNEVEN_BUMP
-    return (one.kind == BUMP and uneven) or (of_load and (late_load or uneven))
+    # the same in both directions, as friction or as load
+    return kinds == (BUMP, UNEVEN_BUMP)

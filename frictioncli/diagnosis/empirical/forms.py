@@ -85,10 +85,8 @@ def forms_of(ranges: Mapping[str, Range], sign: float = 1.0) -> list[Form]:
             found = [late, _uneven(plain, late)]
         if axis != "load":
             of_load = _peak(axis, "load", within)
-            found += [
-                of_load,
-                *([replace(_late(of_load), sign=sign)] if axis == "position" else []),
-            ]
+            at_angle = axis == "position"
+            found.append(replace(_late(of_load), sign=sign) if at_angle else of_load)
         # what touches at an angle, as an end stop or a hose, may carry as well as rub
         channels = ("friction", "load") if axis == "position" else ("friction",)
         for channel in channels:
