@@ -11,7 +11,7 @@ from frictioncli.effects.base import EffectTable
 _FEW_SERIES = 5
 """With fewer series a change is tried before every pair."""
 
-_MOST_MOMENTS = 160
+_MOST_MOMENTS = 480
 """Greatest number of moments tried for a change."""
 
 _CUT_ALIKE = 10.0
@@ -199,7 +199,7 @@ def measured_share(table: EffectTable) -> Array:
 def series_starts(table: EffectTable) -> Array:
     """Return the shares of all pairs measured before each measuring series, shape (moments,).
 
-    Work on a joint takes place between two series. If a table has more than 160 of them, only every
+    Work on a joint takes place between two series. If a table has more than 480 of them, only every
     second is returned, or every third, and so on.
     """
     heads = pair_heads(table)
