@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.empirical.form_columns import BUMP, UNEVEN_BUMP
+from frictioncli.diagnosis.empirical.form_columns import LATE_BUMPS
 from frictioncli.diagnosis.empirical.term import (
     FADING,
     EmpiricalTerm,
@@ -206,7 +206,7 @@ def _series_lines(one: SmoothFunction, term: EmpiricalTerm) -> list[str]:
 
 def _form_lines(form: FormFunction, channel: str) -> list[str]:
     """Return the lines that add a form in one channel."""
-    if form.kind in (BUMP, UNEVEN_BUMP):
+    if form.kind in LATE_BUMPS:
         c, w, lag = (repr(form.shape[name]) for name in ("centre", "width", "lag"))
         ahead, behind = (
             f"exp(-0.5 * pow((position {way} speed * {lag} - ({c})) / {w}, 2.0))" for way in "-+"

@@ -13,7 +13,7 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.deployment.extension import DeployedExtension, instants
-from frictioncli.diagnosis.empirical.form_columns import BUMP, UNEVEN_BUMP
+from frictioncli.diagnosis.empirical.form_columns import LATE_BUMPS
 from frictioncli.diagnosis.empirical.term import (
     FADING,
     INPUTS,
@@ -111,7 +111,7 @@ def empirical_tables(extension: DeployedExtension, tolerance: float) -> list[Par
 def _parts(extension: DeployedExtension, term: EmpiricalTerm) -> Iterator[_Part]:
     """Yield the parts: name, channel, quantities and values at instants."""
     for number, form in enumerate(term.forms, start=1):
-        channels = ("friction", "load") if form.kind in (BUMP, UNEVEN_BUMP) else (form.channel,)
+        channels = ("friction", "load") if form.kind in LATE_BUMPS else (form.channel,)
         for channel in channels:
             yield f"form {number}", channel, _axes_of(form), _form_values(form, channel)
     for number, one in enumerate(term.functions, start=1):

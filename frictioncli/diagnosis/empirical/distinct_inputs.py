@@ -14,7 +14,7 @@ import numpy as np
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.empirical.form import Form
-from frictioncli.diagnosis.empirical.form_columns import BUMP, UNEVEN_BUMP
+from frictioncli.diagnosis.empirical.form_columns import LATE_BUMPS
 from frictioncli.diagnosis.fit.weighted_fit import Weights
 from frictioncli.effects.base import EffectTable
 from frictioncli.effects.pair_series import rows_of
@@ -31,7 +31,7 @@ def input_names(form: Form) -> tuple[str, ...]:
     form : Form
         The form.
     """
-    moved = ("speed",) if form.kind in (BUMP, UNEVEN_BUMP) else ()
+    moved = ("speed",) if form.kind in LATE_BUMPS else ()
     return (*form.axes, *moved, *(("run",) if form.since else ()))
 
 

@@ -16,6 +16,9 @@ BUMP = "bump"
 UNEVEN_BUMP = "uneven_bump"
 """Form of the same that is not as high in both directions, which shows in both channels, too."""
 
+LATE_BUMPS = (BUMP, UNEVEN_BUMP)
+"""Forms that are seen later forward and earlier in reverse, the more the faster the move is."""
+
 MIDDLE_TEMPERATURE = 40.0
 """Temperature from which linear forms count. [°C]"""
 
@@ -45,7 +48,7 @@ def columns_of(
     sign : float, optional
         Sign convention of the torques: +1 where forward is load plus friction, else -1.
     """
-    if kind in (BUMP, UNEVEN_BUMP):
+    if kind in LATE_BUMPS:
         of_directions = _of_directions(table, shape, sign)
         if kind == UNEVEN_BUMP:
             return of_directions

@@ -2,7 +2,7 @@
 
 import math
 
-from frictioncli.diagnosis.empirical.form_columns import BUMP, UNEVEN_BUMP
+from frictioncli.diagnosis.empirical.form_columns import LATE_BUMPS
 from frictioncli.diagnosis.empirical.term import FormFunction
 from frictioncli.wording import number_text
 
@@ -18,7 +18,7 @@ def experiment(form: FormFunction, load_unit: str = "N·m") -> str:
         Unit of load.
     """
     axis = form.axes[0]
-    if form.kind in ("peak", BUMP, UNEVEN_BUMP):
+    if form.kind in ("peak", *LATE_BUMPS):
         centre, width = form.shape["centre"], form.shape["width"]
         if axis == "speed":
             low, high = (_text(centre * math.exp(way * 2 * width)) for way in (-1, 1))

@@ -8,7 +8,7 @@ the centre of a bin, wherever it is.
 import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.empirical.form_columns import BUMP, UNEVEN_BUMP
+from frictioncli.diagnosis.empirical.form_columns import LATE_BUMPS, UNEVEN_BUMP
 from frictioncli.diagnosis.empirical.term import FormFunction
 
 _AT_ONE_WIDTH = float(np.exp(-1 / 2))
@@ -31,7 +31,7 @@ def is_resolved(form: FormFunction, problem: Problem) -> bool:
     torque = added.friction if form.channel == "friction" else added.load
     if np.max(np.abs(torque)) < _AT_ONE_WIDTH * abs(peak):
         return False
-    if form.kind in ("peak", BUMP, UNEVEN_BUMP) and "position" in form.axes:
+    if form.kind in ("peak", *LATE_BUMPS) and "position" in form.axes:
         bins = np.diff(problem.table.angles)
         if form.shape["width"] < np.min(bins) / 2:
             return False
