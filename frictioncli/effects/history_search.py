@@ -71,6 +71,24 @@ def histories(table: EffectTable) -> list[Shape]:
     return distinct([*shapes, *others], share)[:_MOST]
 
 
+def leaves_out(table: EffectTable, rows: Indices, shapes: Sequence[Mapping[str, float]]) -> bool:
+    """Return whether some measuring series begin with no change that is tried.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins of all runs.
+    rows : ndarray of int
+        Rows of the runs whose history is searched.
+    shapes : sequence of mapping of str to float
+        The histories that are tried.
+    """
+    share, starts = measured_share(table)[rows], series_starts(table, most=len(rows) + 1)
+    own = starts[(starts > share.min()) & (starts <= share.max())]
+    tried = {begin for shape in shapes for begin, _ in stretches(shape)}
+    return not tried.issuperset(own.tolist())
+
+
 def _evenly(count: int, most: int) -> Indices:
     """Return places of at most so many of a number of items, at even distances."""
     if count < 1:

@@ -196,11 +196,18 @@ def measured_share(table: EffectTable) -> Array:
     return heads.spread(np.searchsorted(np.sort(clock), clock, side="left") / len(clock))
 
 
-def series_starts(table: EffectTable) -> Array:
+def series_starts(table: EffectTable, most: int = _MOST_MOMENTS) -> Array:
     """Return the shares of all pairs measured before each measuring series, shape (moments,).
 
-    Work on a joint takes place between two series. If a table has more than 480 of them, only every
-    second is returned, or every third, and so on.
+    Work on a joint takes place between two series. If a table has more than so many of them, only
+    every second is returned, or every third, and so on.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    most : int, optional
+        Greatest number of moments.
     """
     heads = pair_heads(table)
     clock = table.clock[heads.first]
@@ -208,7 +215,7 @@ def series_starts(table: EffectTable) -> Array:
     begins = np.unique(share[(table.order[heads.first] == 0) & (share > 0)])
     if len(begins) < _FEW_SERIES:
         begins = np.unique(share)[1:]
-    return np.asarray(begins[:: max(1, -(-len(begins) // _MOST_MOMENTS))])
+    return np.asarray(begins[:: max(1, -(-len(begins) // most))])
 
 
 def stroke_ends(table: EffectTable, *, distance: Array | float) -> tuple[Array, Array]:

@@ -14,7 +14,7 @@ from frictioncli.effects.history import (
     stretches,
     with_run,
 )
-from frictioncli.effects.history_search import histories, refined_history
+from frictioncli.effects.history_search import histories, leaves_out, refined_history
 from frictioncli.effects.history_text import history_text
 from tests.effects.tables import small
 
@@ -90,6 +90,12 @@ def test_histories_tried_are_few_different_and_neither_everywhere_nor_nowhere(ru
     columns = {presence(table, shape).tobytes() for shape in tried}
     assert len(columns) == len(tried)
     assert all(0 < presence(table, shape).mean() < 1 for shape in tried)
+
+
+@pytest.mark.parametrize(("pairs", "most"), [(80, False), (4000, True)])
+def test_a_grid_of_250_histories_leaves_out_series_of_long_runs_only(pairs, most):
+    table = days(2, pairs=pairs)
+    assert leaves_out(table, np.flatnonzero(table.run == 0), histories(table)) is most
 
 
 def test_lasting_recurring_and_single_stretches_are_tried():

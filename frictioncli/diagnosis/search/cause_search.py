@@ -14,7 +14,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, free_coefficients
+from frictioncli.diagnosis.fit.hypotheses import (
+    EffectFit,
+    Hypothesis,
+    HypothesisTest,
+    free_coefficients,
+)
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.noise.significance import (
     credible_set,
@@ -31,6 +36,7 @@ from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.possible import beyond_bounds
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.preparation import Preparation
+from frictioncli.diagnosis.search.refined_test import refined_test
 from frictioncli.diagnosis.search.rivals import CLEARLY, likeliest, rival_log_bayes_factors
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.shown import shown_by_residuals
@@ -38,6 +44,7 @@ from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, MEASUREMENT_EFFECTS
 from frictioncli.effects.base import Effect, applicable
+from frictioncli.effects.history_search import leaves_out
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 _LEAST_SHARE = 0.5
@@ -190,12 +197,26 @@ class _Search:
         skip = _names(step.accepted)
         least = {one.name: self._least(BY_NAME[one.name]) for one in self.catalogue.hypotheses}
         tests = step.tested(self.catalogue, skip, least=least)
+        for one in self.catalogue.hypotheses:
+            if one.name in tests and self._leaves_out(one):
+                fit = step.refined(tests[one.name].effect_fit(BY_NAME[one.name]))
+                tests[one.name] = self.refined_test(tests[one.name], fit)
         factors = with_ramp_evidence(
             {name: one.log_bayes_factor for name, one in tests.items()}, self.ramps
         )
         return step, {
             name: replace(one, log_bayes_factor=factors[name]) for name, one in tests.items()
         }
+
+    def _leaves_out(self, hypothesis: Hypothesis) -> bool:
+        """Return whether a change may have begun at a moment that its grid leaves out."""
+        problem = self.precomputed.problem
+        is_change = BY_NAME[hypothesis.name].moments is not None
+        return is_change and leaves_out(problem.all_runs, problem.rows, hypothesis.shapes)
+
+    def refined_test(self, test: HypothesisTest, fit: EffectFit) -> HypothesisTest:
+        """Return the test of an effect at its refined shape."""
+        return refined_test(self.precomputed.problem, test, fit, len(self.catalogue.hypotheses))
 
     def matters(self, step: Step, test: HypothesisTest) -> bool:
         """Return whether the base leaves enough of an effect for the search to go on with it."""
@@ -279,8 +300,8 @@ def _cause(
     others = [other for other in accepted if other is not one]
     step, tests = search.tested(others)
     fit = step.refined(one)
-    own = tests[one.effect.name]
-    factor = own.refined_log_bayes_factor(fit)
+    own = search.refined_test(tests[one.effect.name], fit)
+    factor = own.log_bayes_factor
     possible = {name: test for name, test in tests.items() if name not in impossible}
     possible, variants = likelier_travel(step, possible, factor)
     sizes = sizes_of(step.precomputed, fit)
