@@ -4,6 +4,7 @@ from itertools import combinations
 
 import numpy as np
 
+from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.effects import BY_NAME
 from frictioncli.quantities import TORQUE
 
@@ -30,6 +31,19 @@ def within_its_bounds(problem, fit):
     return True
 
 
+def left_on_new_run(diagnosis, cause):
+    """Return what a base fitted to the runs seen leaves of a change that goes on on a new run."""
+    if cause.fit.effect.moments is None or not cause.holds_on_new_run:
+        return 0.0
+    seen, new = diagnosis.base, diagnosis.judged
+    base = np.vstack(base_rows(seen))
+    change = np.linalg.lstsq(base, torque(seen, cause.fit), rcond=None)[0]
+    left = torque(new, cause.fit) - np.vstack(base_rows(new)) @ change
+    friction, load = np.split(left, 2)
+    own = friction if cause.fit.effect.channel == "friction" else load
+    return np.sqrt(np.mean(np.square(own)))
+
+
 def keeps_the_rules(diagnosis):
     problem = diagnosis.base
     for cause in diagnosis.causes:
@@ -43,7 +57,8 @@ def keeps_the_rules(diagnosis):
         # or the search found more, and the model surely has some
         found = [one for one in diagnosis.search.causes if one.fit.effect is fit.effect]
         assert low > 0.0
-        assert diagnosis.margin < max([whole * low, *(one.visible_interval[0] for one in found)])
+        sizes = [whole * low, *(one.visible_interval[0] for one in found)]
+        assert diagnosis.margin < max([*sizes, left_on_new_run(diagnosis, cause)])
         assert within_its_bounds(problem, fit), fit
         assert np.diag(fit.covariance).any()
         assert fit.effect.name in cause.effects
