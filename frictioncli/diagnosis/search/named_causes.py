@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.ramps.timing import TorqueTiming
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
+from frictioncli.diagnosis.search.between_runs import without_differences_of_runs
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import (
     BEYOND_DOUBT,
@@ -111,6 +112,7 @@ class Judging:
         first = with_standing(_with(everything, sized), self.problem, self.margin, self.alpha)
         causes, timing = judged_by_timing(first, self.starts)
         causes = with_size_on_new_run(causes, _names(possible), found.step, self.new, self.margin)
+        causes = without_differences_of_runs(causes, found.step)
         named = [cause for cause in causes if cause.standing == "named"]
         held = judged_together(named, found.step, self.problem, self.new)
         return JudgedCauses(found=found, causes=_with(causes, held), timing=timing)

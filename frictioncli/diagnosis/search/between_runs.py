@@ -1,0 +1,93 @@
+"""Causes that show only in how the runs differ, as friction differs from day to day anyway.
+
+A few days whose friction differs at random look like a drift, like running-in, or like a step that
+happened between two of them. Such a cause has a name if it shows within the runs as well, beside a
+level of friction of each run, or if the runs differ by more than days do.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from frictioncli.arrays import Array, Indices
+from frictioncli.diagnosis.fit.columns import main_channel
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.fit.left_by_base import Z95
+from frictioncli.diagnosis.search.cause import Cause
+from frictioncli.diagnosis.search.largest_structure import BETWEEN_DAYS
+from frictioncli.diagnosis.search.step import Step
+from frictioncli.effects.drift import EFFECT as DRIFT
+from frictioncli.effects.history import history, present, run_spans
+from frictioncli.effects.pair_series import measured_share
+from frictioncli.effects.run_in import EFFECT as RUN_IN
+from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
+
+_WITHIN = 6.6
+"""Twice the log likelihood ratio by which a cause shows within the runs: p = 0.01."""
+
+_OF_RUN = 0.15
+"""Share of the rows of a run, at its start or end, in which a change may be there without showing
+within the run."""
+
+_DAYS_DIFFER = (
+    "it shows only in how the runs differ, and by no more than friction may differ from day to day"
+)
+
+
+def without_differences_of_runs(causes: Sequence[Cause], step: Step) -> tuple[Cause, ...]:
+    """Return causes of which none has a name that only days which differ show.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes with their standing.
+    step : Step
+        The last step of the search.
+    """
+    return tuple(
+        replace(one, standing="undetermined", reason=_DAYS_DIFFER)
+        if one.standing == "named"
+        and one.fit.effect in (DRIFT, RUN_IN, STEP_CHANGE)
+        and _is_between_runs(one.fit, step)
+        else one
+        for one in causes
+    )
+
+
+def _is_between_runs(fit: EffectFit, step: Step) -> bool:
+    """Return whether a cause is what days may differ by, and shows within no run."""
+    problem = step.problem
+    run = problem.layout.run[problem.layout.row_pair]
+    if len(np.unique(run)) == 1 or _shows_within(fit, step, run):
+        return False
+    torque = main_channel(problem.basis(fit.effect, fit.shape), fit.effect) @ fit.coefficients
+    means = np.array([np.mean(torque[run == one]) for one in np.unique(run)])
+    relative = float(np.sqrt(fit.covariance[0, 0])) / abs(float(fit.coefficients[0]))
+    least = float(np.ptp(means)) * (1.0 - Z95 * relative)
+    return least < BETWEEN_DAYS * float(np.mean(np.abs(problem.friction)))
+
+
+def _shows_within(fit: EffectFit, step: Step, run: Indices) -> bool:
+    """Return whether a cause shows within the runs, beside a level of friction of each of them.
+
+    A change does if it comes or goes well within one: a pair or two at its start are no evidence.
+    """
+    if fit.effect is STEP_CHANGE:
+        there = step.problem.basis(fit.effect, fit.shape).friction[:, 0] != 0
+        shares = [float(np.mean(there[run == one])) for one in np.unique(run)]
+        return any(_OF_RUN < share < 1.0 - _OF_RUN for share in shares)
+    others = [one for one in step.accepted if one.effect not in (fit.effect, STEP_CHANGE)]
+    beside = Step.of(step.precomputed, [*others, *_levels(step)])
+    return beside.fitted(fit.effect, fit.shape).statistic > _WITHIN
+
+
+def _levels(step: Step) -> list[EffectFit]:
+    """Return a step at the start of each run but the first, of the runs seen."""
+    problem = step.problem
+    share: Array = measured_share(problem.all_runs)[problem.rows]
+    spans = [one for one in run_spans(problem.all_runs) if present(share, history([one])).any()]
+    return [
+        EffectFit(STEP_CHANGE, history([(begin, 1.0)]), np.ones(1), np.eye(1), 0.0)
+        for begin, _ in spans[1:]
+    ]

@@ -1,0 +1,60 @@
+"""Days that differ a little at random are no drift and no step; a drift within them is one."""
+
+import numpy as np
+import pytest
+
+from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.simulator.settings import SynthesisSettings
+from tests.diagnosis.rules_of_names import keeps_the_rules
+from tests.simulation.changed_table import hours
+from tests.simulation.torque_table import simulate_torques
+
+pytestmark = pytest.mark.slow
+
+
+def diagnosed(seed, levels, rate=0.0, torques=None):
+    """Diagnose days with so many per cent or N·m more friction each, and a drift [N·m/h]."""
+    table = simulate_torques(SynthesisSettings(seed=seed, runs=len(levels), joint_kind="plain"))
+    day = table["run"].astype(str).str.removeprefix("day").astype(int).to_numpy() - 1
+    friction = table["friction_torque"].to_numpy(float)
+    time = hours(table) + hours(table).max() * day
+    added = friction * np.array(levels)[day] / 100 + rate * time
+    if torques is not None:
+        added = added + np.array(torques)[day]
+    changed = table.assign(
+        friction_torque=friction + added,
+        torque_forward=table["torque_forward"] + added,
+        torque_reverse=table["torque_reverse"] - added,
+    )
+    diagnosis = diagnose_joint(changed, "motor", "N·m", DiagnosisSettings())
+    keeps_the_rules(diagnosis)
+    return diagnosis
+
+
+@pytest.mark.parametrize(
+    ("seed", "levels", "name"),
+    [
+        pytest.param(17, [1.4, 0.4, -0.7, -1.6], "drift", id="by chance in order"),
+        pytest.param(21, [0.5, 2.4, 0.1, 2.3], "step_change", id="one day higher"),
+    ],
+)
+def test_days_that_differ_by_less_than_days_do_have_no_cause(seed, levels, name):
+    diagnosis = diagnosed(seed, levels)
+    assert diagnosis.causes == ()
+    (cause,) = (one for one in diagnosis.visible if one.fit.effect.name == name)
+    assert "from day to day" in cause.reason
+
+
+def test_a_drift_that_shows_within_the_days_is_named():
+    diagnosis = diagnosed(0, [0.1, 0.0, 0.3], rate=0.25)
+    (cause,) = diagnosis.causes
+    assert cause.fit.effect.name == "drift"
+    assert cause.fit.coefficients == pytest.approx([0.25], abs=0.1)
+
+
+def test_a_day_that_differs_by_more_than_days_do_has_a_step():
+    diagnosis = diagnosed(21, np.zeros(4), torques=[0.0, -2.7, 0.0, 0.0])
+    (cause,) = diagnosis.causes
+    assert cause.fit.effect.name == "step_change"
+    assert cause.holds_on_new_run is False
