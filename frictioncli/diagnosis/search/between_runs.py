@@ -10,13 +10,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from frictioncli.arrays import Array, Indices
+from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.largest_structure import BETWEEN_DAYS
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.effects.base import Basis
 from frictioncli.effects.drift import EFFECT as DRIFT
 from frictioncli.effects.history import history, present, run_spans
 from frictioncli.effects.pair_series import measured_share
@@ -47,39 +48,47 @@ def without_differences_of_runs(causes: Sequence[Cause], step: Step) -> tuple[Ca
     """
     return tuple(
         replace(one, standing="undetermined", reason=_DAYS_DIFFER)
-        if one.standing == "named"
-        and one.fit.effect in (DRIFT, RUN_IN, STEP_CHANGE)
-        and _is_between_runs(one.fit, step)
+        if one.standing == "named" and differs_as_days_do(one.fit, step)
         else one
         for one in causes
     )
 
 
-def _is_between_runs(fit: EffectFit, step: Step) -> bool:
-    """Return whether a cause is what days may differ by, and shows within no run."""
+def differs_as_days_do(
+    fit: EffectFit, step: Step, planted: tuple[Basis, float] | None = None
+) -> bool:
+    """Return whether an effect is what days may differ by, and shows within no run.
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The effect.
+    step : Step
+        Base and all that stands beside it, the effect itself or not.
+    planted : (Basis, float), optional
+        Torque that is added to the misfit, one column, and its coefficient.
+    """
     problem = step.problem
     run = problem.layout.run[problem.layout.row_pair]
-    if len(np.unique(run)) == 1 or _shows_within(fit, step, run):
+    runs = np.unique(run)
+    if len(runs) == 1 or fit.effect not in (DRIFT, RUN_IN, STEP_CHANGE):
         return False
     torque = main_channel(problem.basis(fit.effect, fit.shape), fit.effect) @ fit.coefficients
-    means = np.array([np.mean(torque[run == one]) for one in np.unique(run)])
+    means = np.array([np.mean(torque[run == one]) for one in runs])
     relative = float(np.sqrt(fit.covariance[0, 0])) / abs(float(fit.coefficients[0]))
     least = float(np.ptp(means)) * (1.0 - Z95 * relative)
-    return least < BETWEEN_DAYS * float(np.mean(np.abs(problem.friction)))
-
-
-def _shows_within(fit: EffectFit, step: Step, run: Indices) -> bool:
-    """Return whether a cause shows within the runs, beside a level of friction of each of them.
-
-    A change does if it comes or goes well within one: a pair or two at its start are no evidence.
-    """
+    if least >= BETWEEN_DAYS * float(np.mean(np.abs(problem.friction))):
+        return False
     if fit.effect is STEP_CHANGE:
-        there = step.problem.basis(fit.effect, fit.shape).friction[:, 0] != 0
-        shares = [float(np.mean(there[run == one])) for one in np.unique(run)]
-        return any(_OF_RUN < share < 1.0 - _OF_RUN for share in shares)
+        # a pair or two at the start of a run are no evidence
+        shares = [float(np.mean(torque[run == one] != 0)) for one in runs]
+        return not any(_OF_RUN < share < 1.0 - _OF_RUN for share in shares)
     others = [one for one in step.accepted if one.effect not in (fit.effect, STEP_CHANGE)]
     beside = Step.of(step.precomputed, [*others, *_levels(step)])
-    return beside.fitted(fit.effect, fit.shape).statistic > _WITHIN
+    if planted is not None:
+        basis, size = planted
+        beside = beside.planted(basis, np.array([size]))
+    return beside.fitted(fit.effect, fit.shape).statistic <= _WITHIN
 
 
 def _levels(step: Step) -> list[EffectFit]:

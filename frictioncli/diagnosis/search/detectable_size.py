@@ -17,6 +17,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.hypotheses import HypothesisTest
 from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of
 from frictioncli.diagnosis.noise.significance import statistic_of
+from frictioncli.diagnosis.search.between_runs import differs_as_days_do
 from frictioncli.diagnosis.search.cause import CONVINCING
 from frictioncli.diagnosis.search.effect_size import (
     left_shares,
@@ -235,6 +236,7 @@ class _Judge:
     wanted: int
     _of_torques: dict[int, RivalsOfTorques] = field(default_factory=dict)
     _shares_missed: dict[int, float] = field(default_factory=dict)
+    _of_days: dict[int, tuple[float, float]] = field(default_factory=dict)
 
     def counting(self, least: Sequence[float]) -> int:
         """Return the number of the shape up to whose least size enough are named."""
@@ -259,7 +261,22 @@ class _Judge:
             return True
         # what is not above the margin is no structure
         least = max(MOST_LEFT * left, self.margin)
-        return planted.missed > _STRUCTURE and self._missed(planted) > least
+        if planted.missed > _STRUCTURE and self._missed(planted) > least:
+            return True
+        return self._as_days_differ(planted)
+
+    def _as_days_differ(self, planted: PlantedFit) -> bool:
+        """Return whether days may differ by as much, and more of the effect is needed."""
+        number, size = planted.number, planted.size
+        less, more = self._of_days.get(number, (0.0, _NEVER))
+        if less < size < more:
+            torque = self.fits.torques[number].torque
+            if differs_as_days_do(planted.fit, self.fits.step, (torque, size)):
+                less = size
+            else:
+                more = size
+            self._of_days[number] = less, more
+        return size <= less
 
     def rivalled(self, planted: PlantedFit) -> bool:
         """Return whether a rival that has no name, or a name of its own, takes an effect."""
