@@ -5,12 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, physical_bounds
 from frictioncli.diagnosis.noise.significance import NullDistribution
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.confounded import confounded
 from frictioncli.diagnosis.search.shown import Shown
-from frictioncli.diagnosis.search.standing import with_standing, without_cancelling
+from frictioncli.diagnosis.search.standing import (
+    with_standing,
+    without_cancelling,
+    without_linear_lag,
+)
 from frictioncli.effects import BY_NAME
 from tests.diagnosis.dense_noise import problem
 from tests.diagnosis.wave_effects import A, B, effect
@@ -344,3 +349,19 @@ def test_a_ripple_that_hardly_repeats_is_any_smooth_function(joint, periods, exp
     ((found, reason),) = standing(joint, ripple)
     assert found == expected
     assert ("smooth" in reason) == (expected != "named")
+
+
+def test_a_lag_has_a_name_only_as_a_temperature_of_the_gear(joint):
+    """Its linear form knows no bounds: heat of -21 °C had a name."""
+    lag = replace(
+        cause(
+            BY_NAME["thermal_lag"], coefficients=(-0.1, -21.0, 0.0, 0.4), errors=(3.6, 120, 1, 1)
+        ),
+        standing="named",
+    )
+    other = replace(cause(), standing="named")
+    left, kept = without_linear_lag([lag, other], joint)
+    assert (left.standing, kept.standing) == ("visible", "named")
+    assert "temperature of the gear" in left.reason
+    hidden = HiddenTemperature.of(600.0, np.array([1.0, 0.0, 0.0, 0.0]), 1.0)
+    assert without_linear_lag([lag], replace(joint, hidden=hidden)) == (lag,)

@@ -25,7 +25,7 @@ from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.shown import shown_by_residuals
 from frictioncli.diagnosis.search.size_on_new_run import with_size_on_new_run
-from frictioncli.diagnosis.search.standing import with_standing
+from frictioncli.diagnosis.search.standing import with_standing, without_linear_lag
 from frictioncli.diagnosis.search.stated_size import sizes_beside_each_other
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing
@@ -112,6 +112,7 @@ class Judging:
         first = with_standing(_with(everything, sized), self.problem, self.margin, self.alpha)
         causes, timing = judged_by_timing(first, self.starts)
         causes = with_size_on_new_run(causes, _names(possible), found.step, self.new, self.margin)
+        causes = without_linear_lag(causes, self.problem)
         causes = without_differences_of_runs(causes, found.step)
         named = [cause for cause in causes if cause.standing == "named"]
         held = judged_together(named, found.step, self.problem, self.new)

@@ -28,6 +28,7 @@ from frictioncli.diagnosis.search.possible import (
 )
 from frictioncli.effects.base import Effect
 from frictioncli.effects.position_ripple import EFFECT as POSITION_RIPPLE
+from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 _OF_CHANGES = 0.02
 """Significance level of a change, relative to that of other effects: drift over a few dozen pairs
@@ -48,6 +49,8 @@ _ONE_DIRECTION = (
     "friction changes as much, as by torque in one direction of motion only: a brake that drags"
     " after a stop would look the same"
 )
+
+_LINEAR = "no temperature of the gear was found that explains it"
 
 _CANCELLING = 0.5
 """Two causes cancel each other if their sum has less than this share of the smaller one's RMS."""
@@ -107,6 +110,29 @@ def without_cancelling(causes: Sequence[Cause], problem: Problem) -> tuple[Cause
                     reason=f"it and {judged[other].fit.effect.name} cancel each other",
                 )
     return tuple(judged)
+
+
+def without_linear_lag(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
+    """Return causes of which no lag of the gear has a name that was not estimated as a temperature.
+
+    Its linear form knows no bounds of heat and shares. A lag that may be below the margin stays
+    linear, and may seem larger beside fewer causes.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes with their standing.
+    problem : Problem
+        The rows, about the temperature of the gear where one was found.
+    """
+    return tuple(
+        replace(one, standing="visible", reason=_LINEAR)
+        if one.fit.effect.name == THERMAL_LAG.name
+        and one.standing == "named"
+        and problem.hidden is None
+        else one
+        for one in causes
+    )
 
 
 def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Cause:
