@@ -183,6 +183,19 @@ def run_spans(table: EffectTable) -> list[Stretch]:
     return list(zip(begins, [*begins[1:], 1.0], strict=True))
 
 
+def spans_with(table: EffectTable, share: Array) -> list[Stretch]:
+    """Return the spans of the runs that have some of these pairs, in order.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins of all runs.
+    share : ndarray
+        Shares of all pairs measured before some of them. [-]
+    """
+    return [span for span in run_spans(table) if present(share, history([span])).any()]
+
+
 def distinct(shapes: Iterable[Shape], share: Array) -> list[Shape]:
     """Return the histories that differ in some pairs; the first of those that do not.
 

@@ -14,6 +14,7 @@ from frictioncli.effects.history import (
     history,
     present,
     run_spans,
+    spans_with,
     stretches,
     with_run,
 )
@@ -156,7 +157,7 @@ def refined_history(
         The history.
     """
     share = np.unique(measured_share(table)[rows])
-    spans = [span for span in run_spans(table) if present(share, history([span])).any()]
+    spans = spans_with(table, share)
     best = history(stretches(shape))
     highest = score(best) - _STRETCH_COST * len(stretches(best))
 

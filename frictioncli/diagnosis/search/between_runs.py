@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from frictioncli.arrays import Array
 from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import Z95
@@ -19,7 +18,7 @@ from frictioncli.diagnosis.search.largest_structure import BETWEEN_DAYS
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Basis
 from frictioncli.effects.drift import EFFECT as DRIFT
-from frictioncli.effects.history import history, present, run_spans
+from frictioncli.effects.history import history, spans_with
 from frictioncli.effects.pair_series import measured_share
 from frictioncli.effects.run_in import EFFECT as RUN_IN
 from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
@@ -94,9 +93,8 @@ def differs_as_days_do(
 def _levels(step: Step) -> list[EffectFit]:
     """Return a step at the start of each run but the first, of the runs seen."""
     problem = step.problem
-    share: Array = measured_share(problem.all_runs)[problem.rows]
-    spans = [one for one in run_spans(problem.all_runs) if present(share, history([one])).any()]
+    share = measured_share(problem.all_runs)[problem.rows]
     return [
         EffectFit(STEP_CHANGE, history([(begin, 1.0)]), np.ones(1), np.eye(1), 0.0)
-        for begin, _ in spans[1:]
+        for begin, _ in spans_with(problem.all_runs, share)[1:]
     ]

@@ -31,9 +31,8 @@ from frictioncli.effects.history import (
     Shape,
     Stretch,
     distinct,
-    history,
     present,
-    run_spans,
+    spans_with,
     stretches,
     with_run,
 )
@@ -159,7 +158,7 @@ def _test_of_change(residual: NewRunResidual, shape: Shape) -> NewRunTest:
     """
     new, table = residual.new, residual.new.all_runs
     share = measured_share(table)[new.rows]
-    span = next(one for one in run_spans(table) if present(share, history([one])).all())
+    (span,) = spans_with(table, share)
     absent, whole = (with_run(shape, span, parts) for parts in ([], [span]))
     parts = [[part] for part in parts_of(share, span)]
     levels = two_level_history(new)

@@ -44,7 +44,7 @@ from frictioncli.effects.history import (
     history,
     presence,
     present,
-    run_spans,
+    spans_with,
     stretches,
 )
 from frictioncli.effects.history_search import refined_history
@@ -153,7 +153,7 @@ def _change(
     new = residual.new
     table = new.all_runs
     share = np.unique(measured_share(table)[new.rows])
-    span = next(one for one in run_spans(table) if present(share, history([one])).all())
+    (span,) = spans_with(table, share)
     shapes = [history([span])]
     shapes += distinct((history([part]) for part in parts_of(share, span)), share)
 
