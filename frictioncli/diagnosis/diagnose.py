@@ -191,12 +191,14 @@ def _diagnosed(
         seed=settings.seed,
         structure=named.structure,
     )
-    structure = unexplained(named.structure, causes, empirical, step, settings.alpha)
-    if new and structure is None and empirical is None and not appeared:
+    evident = empirical if empirical is not None and empirical.is_structure else None
+    structure = unexplained(named.structure, causes, evident, step, settings.alpha)
+    if new and structure is None and evident is None and not appeared:
         begun = structure_on_new_run(
             step, causes, (new, predicted), margin=margin, floor=found.floor, seed=settings.seed
         )
-        structure, empirical = begun or (None, None)
+        structure, evident = begun or (None, None)
+        empirical = evident or empirical
     corrected = noticed if extension is not None or empirical is not None else ()
     names = {one.fit.effect.name for one in corrected}
     rest = [one for one in named.others if one.fit.effect.name not in names]

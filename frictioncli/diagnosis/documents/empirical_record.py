@@ -111,6 +111,8 @@ class EmpiricalGainRecord(msgspec.Struct, frozen=True, kw_only=True):
         [N·m] within which it is valid.
     parts : tuple of LocatedRecord
         The forms that describe it, or else its functions; the largest first.
+    is_structure : bool
+        Whether it is more than the smooth error that is expected of any model.
     """
 
     size: float
@@ -123,6 +125,7 @@ class EmpiricalGainRecord(msgspec.Struct, frozen=True, kw_only=True):
     noise_floor: float
     ranges: Mapping[str, Range]
     parts: tuple[LocatedRecord, ...] = ()
+    is_structure: bool = True
 
     @property
     def forms(self) -> tuple[LocatedRecord, ...]:
@@ -184,6 +187,7 @@ def gain_record(
         noise_floor=gain.floor,
         ranges=found.term.ranges,
         parts=tuple(_located_record(one, units, found, delay_is_stated) for one in found.parts),
+        is_structure=found.is_structure,
     )
 
 

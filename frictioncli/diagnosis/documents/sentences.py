@@ -221,10 +221,13 @@ def empirical_text(document: DiagnosisDocument) -> str:
     # structure that a form describes is said already
     if found.forms and (document.structure is None or document.structure.formula is None):
         what = f" It describes {', and '.join(one.description or '' for one in found.forms)}."
-    if not found.forms:
+    stands_for = "the unexplained part"
+    if not found.is_structure and document.structure is None:
+        stands_for = "the smooth error that any model has"
+    elif not found.forms:
         what = f" It varies with {list_text(_parts(found, unit))}."
     return (
-        f"An empirical term for the unexplained part reduces the misfit {on} from"
+        f"An empirical term for {stands_for} reduces the misfit {on} from"
         f" {number_text(found.rmse_before, 2)} to {number_text(found.rmse_after, 2)} {unit} (RMS):"
         f" {100 * found.reduction:.0f} % less ({low} to {high}).{what} It names no cause and is"
         f" valid only {_within_text(found, document.unit_of('load'))}."

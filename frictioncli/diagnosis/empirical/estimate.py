@@ -20,9 +20,10 @@ another form may be there instead that is nearly as likely, or the data cannot s
 little of the blocks makes way for the next.
 
 A form is evidence beyond that discrepancy, also where the data do not tell which of several of one
-quantity it is. Free functions are not: any joint has some, which recur on every run. Without a form
-a term is used only where it surely explains more than the root sum of squares of the smallest size
-worth a name and of the discrepancy that is expected of any joint.
+quantity it is. Free functions are not: any joint has some, which recur on every run. They are part
+of the prediction all the same; without a form a term is structure only where it surely explains
+more than the root sum of squares of the smallest size worth a name and of the discrepancy that is
+expected of any joint.
 """
 
 from collections.abc import Callable, Sequence
@@ -102,6 +103,8 @@ class Empirical:
         Twice the log likelihood ratio of the first of its forms; 0 without any.
     p_value : float or None
         Probability that noise gives as much, corrected for the number of forms that were tried.
+    is_structure : bool
+        Whether it is more than the discrepancy that is expected of any joint.
     """
 
     term: EmpiricalTerm
@@ -113,6 +116,7 @@ class Empirical:
     without: Extension
     statistic: float = 0.0
     p_value: float | None = None
+    is_structure: bool = True
 
 
 NewRun = tuple[Problem, Callable[[Extension], Extension]]
@@ -224,7 +228,8 @@ def empirical_term(
         return replace(used, statistic=first.statistic, p_value=min(1.0, chance))
     if used is None or evident:
         return used
-    return None if min(surely_explained(free.gain), surely_explained(used.gain)) < least else used
+    surely = min(surely_explained(free.gain), surely_explained(used.gain))
+    return replace(used, is_structure=surely >= least)
 
 
 def _used(

@@ -102,7 +102,8 @@ def structure_on_new_run(
         structure=found,
         base_is_of_others=True,
     )
-    return replace(found, only_on=problem.runs[-1]), term
+    is_structure = term is not None and term.is_structure
+    return replace(found, only_on=problem.runs[-1]), term if is_structure else None
 
 
 def _at_temperatures_of(seen: Problem, new: Problem) -> Problem | None:
