@@ -34,7 +34,7 @@ DOCUMENTS = (
 
 NUMBERS = (
     *("margin", "share_seen", "nuisance", "before", "after", "floor", "reachable"),
-    *("floor_said", "diagnosed", "seconds"),
+    *("with_term", "floor_said", "diagnosed", "seconds"),
 )
 """Columns that hold a number."""
 
@@ -132,7 +132,7 @@ def _parameters(model: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def _said(said: Said, *, with_sizes: bool) -> dict[str, object]:
     diagnosis = said.diagnosis
-    gain = diagnosis.get("gain") or {}
+    gain, term = diagnosis.get("gain") or {}, diagnosis.get("empirical") or {}
     return {
         "verdict": diagnosis["verdict"],
         "causes_json": _json([_cause(one) for one in diagnosis["causes"] if one["effects"]]),
@@ -143,6 +143,7 @@ def _said(said: Said, *, with_sizes: bool) -> dict[str, object]:
         ),
         "detectable_json": _json(diagnosis["detectable"]) if with_sizes else "",
         "after": f"{gain['rmse_after']:.5g}" if gain else "",
+        "with_term": f"{term['rmse_after']:.5g}" if term.get("basis") == "new_run" else "",
         "floor_said": f"{gain['noise_floor']:.5g}" if gain else "",
         "diagnosed": f"{said.seconds:.2f}",
     }

@@ -93,22 +93,23 @@ def _of_days(joints: Sequence[Joint]) -> str:
     if not named:
         return ""
 
-    def medians(among: Sequence[Joint]) -> tuple[float, float, float]:
-        after = np.array([one.over_floor for one in among])
-        oracle = np.array([one.numbers["reachable"] / one.numbers["floor"] for one in among])
-        floor = np.array([one.numbers["floor"] for one in among])
-        beyond = floor * np.sqrt(np.maximum(after**2 - oracle**2, 0.0))
-        return float(np.median(after)), float(np.median(oracle)), float(np.median(beyond))
+    def medians(among: Sequence[Joint]) -> str:
+        over = {
+            "with all that it hands out": [one.over_floor for one in among],
+            "with the causes alone": [one.causes_alone / one.numbers["floor"] for one in among],
+            "of the oracle": [one.numbers["reachable"] / one.numbers["floor"] for one in among],
+        }
+        return ", ".join(f"{np.median(ratios):.2f} {whose}" for whose, ratios in over.items())
 
-    (said, oracle, _), (of_named, oracle_of_named, beyond) = medians(known), medians(named)
+    terms = sum(not np.isnan(one.numbers["with_term"]) for one in known)
     return _filled(
-        f"*Day kept out over noise floor.* Without networks the median is {said:.2f}"
-        f" ({len(known)} joints). An oracle from whose data the hidden effect is taken out, so that"
-        " base model and measurement effects are all there is to fit, has"
-        f" {oracle:.2f}: nuisances differ from day to day. On the {len(named)} joints on which the"
-        f" program has the right name the medians are {of_named:.2f} and {oracle_of_named:.2f}; the"
-        f" extended model adds {beyond:.2f} N·m to the error of the oracle, as root of the"
-        " difference of squares."
+        "*Day kept out over noise floor.* The extended model has the causes that are named and, on"
+        f" {terms} of {len(known)} joints, an empirical term for the smooth error that is left. It"
+        " has one where the term reduces the error on blocks of the first day that it was not"
+        " estimated from, and on the day kept out. The oracle fits base model and measurement"
+        " effects to data from which the hidden effect is taken out. Without networks the medians"
+        f" are {medians(known)}; on the {len(named)} joints on which the program has the right"
+        f" name, {medians(named)}."
     )
 
 

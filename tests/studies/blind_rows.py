@@ -113,10 +113,16 @@ class Joint:
         return [one for one in (*self.sets, *self.findings) if not self.true_names & set(one)]
 
     @property
-    def after(self) -> float:
-        """RMS misfit on the day kept out of what the program hands out. [N·m]"""
+    def causes_alone(self) -> float:
+        """RMS misfit on the day kept out of base and causes. [N·m]"""
         after = self.numbers["after"]
         return self.numbers["before"] if np.isnan(after) else after
+
+    @property
+    def after(self) -> float:
+        """RMS misfit on the day kept out of all that the program hands out. [N·m]"""
+        after = self.numbers["with_term"]
+        return self.causes_alone if np.isnan(after) else after
 
     @property
     def over_floor(self) -> float:
