@@ -24,13 +24,14 @@ from frictioncli.diagnosis.ramps.evidence import RampLog, ramp_evidence
 from frictioncli.diagnosis.ramps.settling import settled_problems
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_search import find_causes
+from frictioncli.diagnosis.search.judging import Judging
 from frictioncli.diagnosis.search.late_ripple import shown_by_ripple
 from frictioncli.diagnosis.search.margin import channel_margin, margin_of
 from frictioncli.diagnosis.search.measurement import (
     beside_the_rest,
     corrected_without_name,
 )
-from frictioncli.diagnosis.search.named_causes import Judging, named_causes
+from frictioncli.diagnosis.search.named_causes import named_causes
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.preparation import Preparation

@@ -6,8 +6,8 @@ from functools import partial
 
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT, refuted_by_new_run
+from frictioncli.diagnosis.search.judging import JudgedCauses, Judging
 from frictioncli.diagnosis.search.measurement import clear_effects, doubtful_filter
-from frictioncli.diagnosis.search.named_causes import JudgedCauses, Judging
 from frictioncli.diagnosis.search.new_run_rivals import refuted_by_return, without_refuted_rivals
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult

@@ -8,8 +8,9 @@ import pytest
 from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import sizes_of
+from frictioncli.diagnosis.search.judging import Judging
 from frictioncli.diagnosis.search.measurement import measurement_causes
-from frictioncli.diagnosis.search.named_causes import Judging, named_causes
+from frictioncli.diagnosis.search.named_causes import named_causes
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
@@ -97,3 +98,26 @@ def test_where_all_has_a_name_nothing_is_judged_anew():
     assert named.step is found.step
     assert named.measurement is found.measurement
     assert not named.others
+
+
+def hump(rows):
+    """Friction that is higher about 70 deg."""
+    return np.exp(-np.square((rows.position - 70.0) / 22.0) / 2)
+
+
+@pytest.mark.parametrize(("height", "named_alone"), [(0.0, True), (5.0, False)])
+def test_what_may_be_a_part_of_a_cause_that_has_lost_its_name_loses_its_own(height, named_alone):
+    """A hump of 5 N·m where at most 0.5 N·m are physically possible."""
+    data = problem(3, friction=lambda rows: 0.6 * B(rows) + height * hump(rows))
+    impossible = effect("hump", [(1.0, hump)], upper=0.5)
+    _, plain = judged(data, RIPPLE)
+    assert (plain.structure is None) is named_alone
+    found, named = judged(data, RIPPLE, *([] if named_alone else [impossible]))
+    assert "ripple" in [one.fit.effect.name for one in found.causes]
+    own = [one.fit.effect.name for one in named.causes if not one.fit.effect.measurement]
+    assert own == (["ripple"] if named_alone else [])
+    if not named_alone:
+        assert named.structure.axes == ("position",)
+        reasons = {one.fit.effect.name: one.reason for one in named.others}
+        assert "physically possible" in reasons["hump"]
+        assert "structure along angle" in reasons["ripple"]

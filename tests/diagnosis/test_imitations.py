@@ -10,7 +10,8 @@ from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search import cause_selection
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import refuted_by_new_run
-from frictioncli.diagnosis.search.named_causes import JudgedCauses, without_imitations
+from frictioncli.diagnosis.search.judging import JudgedCauses
+from frictioncli.diagnosis.search.named_causes import without_imitations
 from frictioncli.diagnosis.thermal.refine import restricted
 from frictioncli.effects import BY_NAME
 
