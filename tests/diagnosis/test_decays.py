@@ -2,9 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from frictioncli.diagnosis.search.decays import with_one_decay
+from frictioncli.diagnosis.data.hidden_temperature import HiddenTemperature
+from frictioncli.diagnosis.search.decays import with_one_decay, without_slow_recovery
 from frictioncli.effects import BY_NAME
 from tests.diagnosis.dense_noise import problem
 from tests.diagnosis.test_standing import cause
@@ -58,3 +60,31 @@ def test_what_does_not_only_fall_is_another_cause(runs):
     # a second run tells way from time; and nothing says that a drift is a decay by itself
     assert with_one_decay([ran_in, falling], two_runs) == (ran_in, falling)
     assert with_one_decay([falling], one_run) == (falling,)
+
+
+@pytest.mark.parametrize(
+    ("duration", "time_constant", "is_named"),
+    [
+        # 20 pairs a minute apart, as grease takes; twice as many; a gear that is slower by far
+        (1200.0, 600.0, True),
+        (2400.0, 600.0, False),
+        (2400.0, 7200.0, True),
+        (4800.0, 7200.0, False),
+    ],
+)
+def test_friction_after_rests_that_decays_as_the_gear_warms_may_be_its_lag(
+    runs, duration, time_constant, is_named
+):
+    hidden = HiddenTemperature.of(time_constant, (1.0, 5.0, 0.0, 0.0), 1000.0)
+    joint = replace(runs[0], hidden=hidden)
+    clock, run, pair = (np.asarray(getattr(joint.table, one)) for one in ("clock", "run", "pair"))
+    spans = [np.ptp(clock[run == one]) / np.ptp(pair[run == one]) for one in np.unique(run)]
+    lag = of("thermal_lag", 1.0, 2.0)
+    slow = of("rest_recovery", 2.0, 1.0, pairs=duration / np.mean(spans), rest_time=3600.0)
+    lag = replace(lag, fit=replace(lag.fit, coefficients=np.zeros(4)))
+    judged = without_slow_recovery([lag, slow], joint)
+    assert judged[0] is lag
+    assert judged[1].standing == (slow.standing if is_named else "undetermined")
+    # without a lag, or about the measured temperature, nothing else decays so
+    assert without_slow_recovery([slow], joint) == (slow,)
+    assert without_slow_recovery([lag, slow], runs[0]) == (lag, slow)

@@ -9,7 +9,7 @@ from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.between_runs import without_differences_of_runs
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import judged_together, uncertain_causes
-from frictioncli.diagnosis.search.decays import with_one_decay
+from frictioncli.diagnosis.search.decays import with_one_decay, without_slow_recovery
 from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
@@ -184,6 +184,7 @@ class Judging:
             # what the starts of moves tell of the delay counts, too
             uncertain -= {DELAY}
         certain = judged.without_names(uncertain, "undetermined", _UNCERTAIN)
+        certain = certain.with_newer(without_slow_recovery(certain.named, self.problem))
         return certain.with_newer(with_one_decay(certain.named, self.problem))
 
 
