@@ -213,13 +213,14 @@ def _size(misfit: Array, bins: Indices, pair: Indices) -> tuple[float, tuple[flo
 
     With its 95 % interval.
     """
-    cells, cell = np.unique(np.stack([bins, pair]), axis=1, return_inverse=True)
-    cell = cell.reshape(-1)
+    pairs = int(pair.max(initial=0)) + 1
+    cells, cell = np.unique(bins * pairs + pair, return_inverse=True)
     means = np.bincount(cell, misfit) / np.bincount(cell)
-    count = np.bincount(cells[0])
+    own = cells // pairs
+    count = np.bincount(own)
     used = count > 1
-    mean = np.bincount(cells[0], means)[used] / count[used]
-    scatter = np.bincount(cells[0], np.square(means))[used] / count[used] - np.square(mean)
+    mean = np.bincount(own, means)[used] / count[used]
+    scatter = np.bincount(own, np.square(means))[used] / count[used] - np.square(mean)
     error = np.maximum(scatter, 0.0) / (count[used] - 1)
     weight = count[used] / max(count[used].sum(), 1)
     square = float(weight @ (np.square(mean) - error))
