@@ -78,7 +78,7 @@ def _fitted_from(
             break
         chosen = products.chosen(variances.noise)
         before = np.inf
-        for _ in range(_ITERATIONS):
+        for number in range(_ITERATIONS):
             fit = evaluate_chosen(components, chosen, known, variances)
             if fit.objective < best.objective:
                 best = fit
@@ -86,7 +86,8 @@ def _fitted_from(
                 found = found | {variances.noise}
                 break
             before = fit.objective
-            variances = _updated(components, chosen, fit)
+            if number < _ITERATIONS - 1:
+                variances = _updated(components, chosen, fit)
         if best.variances.noise == start.noise:
             break
         start = best.variances
