@@ -131,11 +131,11 @@ def effective_shapes(inner: Array, width: int) -> float:
         tail = special.chdtri(span.shape[1], _LEVEL * generator.random((len(own), 1)))
         wanted = along * np.sqrt(tail / np.sum(np.square(along), axis=1, keepdims=True))
         own += (wanted - along) @ span.T
-    number = np.zeros(noise.shape[:2])
-    for span in spans:
-        critical = float(special.chdtri(span.shape[1], _LEVEL))
-        number += np.sum(np.square(noise @ span), axis=-1) > critical * (1 - 1e-9)
-    return float(np.sum(np.mean(1 / number, axis=1)))
+    ranks = np.array([span.shape[1] for span in spans])
+    squares = np.square(noise.reshape(-1, len(columns)) @ np.hstack(spans))
+    lengths = np.add.reduceat(squares, np.cumsum(ranks) - ranks, axis=1)
+    number = np.sum(lengths > special.chdtri(ranks, _LEVEL) * (1 - 1e-9), axis=1)
+    return float(np.sum(np.mean(1 / number.reshape(noise.shape[:2]), axis=1)))
 
 
 def log_bayes_factor(grid: Array, freedom: int) -> float:
