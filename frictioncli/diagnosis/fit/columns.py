@@ -100,6 +100,8 @@ def reduced(layout: PairLayout, friction: Array, load: Array) -> ModelColumns:
 
 def joined(parts: Sequence[ModelColumns]) -> ModelColumns:
     """Return several sets of columns side by side."""
+    if len(parts) == 1:
+        return parts[0]
     return ModelColumns(
         *(
             ChannelColumns(

@@ -76,10 +76,7 @@ def hypothesis_of(
     rms = [np.sqrt(np.mean(np.square(main_channel(basis, effect)), axis=0)) for basis in bases]
     parts = [bases[first : first + _AT_ONCE] for first in range(0, len(bases), _AT_ONCE)]
     columns = joined(
-        [
-            reduced(problem.layout, *(np.hstack(channel) for channel in zip(*part, strict=True)))
-            for part in parts
-        ]
+        [reduced(problem.layout, *map(_beside, zip(*part, strict=True))) for part in parts]
     )
     lower, upper = physical_bounds(effect, problem)
     return Hypothesis(
@@ -91,6 +88,11 @@ def hypothesis_of(
         lower=lower,
         upper=upper,
     )
+
+
+def _beside(columns: Sequence[Array]) -> Array:
+    """Return columns beside each other; those of a single shape are not copied."""
+    return columns[0] if len(columns) == 1 else np.hstack(columns)
 
 
 def physical_bounds(effect: Effect, problem: Problem) -> tuple[Array, Array]:

@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import compress, pairwise
 
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.fit.columns import RANK, joined
+from frictioncli.diagnosis.fit.columns import RANK, ModelColumns, joined
 from frictioncli.diagnosis.fit.hypotheses import Hypothesis
 from frictioncli.diagnosis.fit.mixed_model import Variances
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
@@ -41,13 +41,14 @@ class Catalogue:
     _directions: dict[int, float] = field(default_factory=dict)
     _parts: dict[tuple[int, int], Part] = field(default_factory=dict)
     _shown: dict[tuple[int, int], bool] = field(default_factory=dict)
+    _spans: dict[tuple[bool, ...], Array] = field(default_factory=dict)
 
     @classmethod
     def of(cls, precomputed: Precomputed, hypotheses: Sequence[Hypothesis]) -> "Catalogue":
         """Return the catalogue of these hypotheses."""
-        empty = precomputed.base.take(slice(0, 0))
         ends = np.cumsum([0, *(one.columns.count for one in hypotheses)]).tolist()
-        columns = joined([empty, *(one.columns for one in hypotheses)])
+        none = precomputed.base.take(slice(0, 0))
+        columns = joined([one.columns for one in hypotheses] or [none])
         return cls(
             precomputed=precomputed,
             hypotheses=tuple(hypotheses),
@@ -162,23 +163,25 @@ class Catalogue:
         return self._directions[number]
 
     def _independent(self, number: int) -> float:
-        start, place, base = self.precomputed.start, self.places[number], self.precomputed.base
-        columns, beside = [], []
-        for channel in (0, 1):
-            own, known = self.part.columns.channels[channel], base.channels[channel]
-            for values, others, scale in (
-                (own.within, known.within, start.within[channel]),
-                (own.means, known.means, start.between[channel]),
-            ):
-                if values[:, place].any():
-                    columns.append(values[:, place] / np.sqrt(scale))
-                    beside.append(others / np.sqrt(scale))
-        if not columns:
+        own = self._over_noise(self.part.columns.take(self.places[number]))
+        shown = tuple(bool(one.any()) for one in own)
+        if not any(shown):
             return 1.0
-        stacked = np.vstack(columns)
-        span = orthonormal_basis(np.vstack(beside), tolerance=RANK)
+        stacked = np.vstack(list(compress(own, shown)))
+        if shown not in self._spans:
+            beside = np.vstack(list(compress(self._over_noise(self.precomputed.base), shown)))
+            self._spans[shown] = orthonormal_basis(beside, tolerance=RANK)
+        span = self._spans[shown]
         left = stacked - span @ (span.T @ stacked)
         return effective_shapes(left.T @ left, self.hypotheses[number].width)
+
+    def _over_noise(self, columns: ModelColumns) -> list[Array]:
+        """Return the parts of columns over their noise before anything is fitted."""
+        start, found = self.precomputed.start, []
+        for channel, part in enumerate(columns.channels):
+            found.append(part.within / np.sqrt(start.within[channel]))
+            found.append(part.means / np.sqrt(start.between[channel]))
+        return found
 
     def _shows(self, channel: int, number: int) -> bool:
         """Return whether a hypothesis has any torque in a channel."""
