@@ -39,7 +39,12 @@ class ChosenProducts:
             Variance of the deviations, and of the pair means, in friction and load. [(N·m)²]
         """
         parts = zip(self.within, within, self.between, between, strict=True)
-        return [one / of_one + two / of_two for one, of_one, two, of_two in parts]
+        found = []
+        for one, of_one, two, of_two in parts:
+            both = one / of_one
+            both += two / of_two
+            found.append(both)
+        return found
 
     def squares(self, combination: Array) -> tuple[list[float], list[float]]:
         """Return the squared lengths of a combination of all columns, of friction and load.
@@ -135,6 +140,9 @@ class Products:
         def of_means(channel: int, noise: int) -> Array:
             time, precision = known.noises.time_and_precision(channel, noise)
             modes = new.modes(channel, time)
+            if not modes.any():
+                none = np.zeros((modes.shape[1],) * 2)
+                return bordered(self.between(channel, noise), 0.0, none)
             weighted = modes * precision[:, np.newaxis]
             across = known.modes(channel, time).T @ weighted
             return bordered(self.between(channel, noise), across, modes.T @ weighted)
@@ -142,6 +150,10 @@ class Products:
         within = []
         for channel, before in enumerate(self.within):
             deviations = new.within(channel)
+            if not deviations.any():
+                none = np.zeros((deviations.shape[1],) * 2)
+                within.append(bordered(before, 0.0, none))
+                continue
             across = np.vstack(
                 [
                     one.columns.channels[channel].within.T @ deviations
@@ -179,15 +191,15 @@ class Products:
         )
 
 
-def bordered(old: Array, across: Array, own: Array) -> Array:
+def bordered(old: Array, across: Array | float, own: Array) -> Array:
     """Return inner products with columns inserted before the last one.
 
     Parameters
     ----------
     old : ndarray, shape (columns, columns)
         Without them.
-    across : ndarray, shape (columns, width)
-        Of the old columns with them.
+    across : ndarray, shape (columns, width), or 0.0
+        Of the old columns with them; 0 where they do not show.
     own : ndarray, shape (width, width)
         Of them with each other.
     """
@@ -197,6 +209,6 @@ def bordered(old: Array, across: Array, own: Array) -> Array:
     middle = slice(last, last + width)
     found[before[:, np.newaxis], before] = old
     found[before, middle] = across
-    found[middle, before] = across.T
+    found[middle, before] = np.transpose(across)
     found[middle, middle] = own
     return found
