@@ -37,6 +37,7 @@ class Catalogue:
     places: tuple[slice, ...]
     part: Part
     _within: dict[tuple[int, int], tuple[Part, Array]] = field(default_factory=dict)
+    _stacked: dict[tuple[int, int], tuple[TransformedColumns, Array]] = field(default_factory=dict)
     _own: dict[tuple[int, int], Array] = field(default_factory=dict)
     _directions: dict[int, float] = field(default_factory=dict)
     _parts: dict[tuple[int, int], Part] = field(default_factory=dict)
@@ -111,11 +112,9 @@ class Catalogue:
                 continue
             modes, weight = self._modes(channel, place, variances)
             time = self.precomputed.noises.indices[variances.noise[channel]][0]
-            across[known.places.shown(channel)] += self._across_within(
-                channel, known, place
-            ) / variances.within[channel] + known.modes(channel, time).T @ (
-                modes * weight[:, np.newaxis]
-            )
+            own = known.modes(channel, time).T @ (modes * weight[:, np.newaxis])
+            own += self._across_within(channel, known, place) / variances.within[channel]
+            across[known.places.shown(channel)] += own
         return across
 
     def _modes(self, channel: int, place: slice, variances: Variances) -> tuple[Array, Array]:
@@ -193,15 +192,20 @@ class Catalogue:
 
     def _across_within(self, channel: int, known: TransformedColumns, place: slice) -> Array:
         """Return inner products of deviations with those of known columns that show."""
-        found = []
-        for part in known.shown(channel):
-            key = (channel, id(part))
-            if key not in self._within:
-                own = self.part.columns.channels[channel].within
-                product = part.columns.channels[channel].within.T @ own
-                self._within[key] = (part, product)  # the part lives as long as its number
-            found.append(self._within[key][1][:, place])
-        return np.vstack(found)
+        if (channel, id(known)) not in self._stacked:
+            found = [self._within_products(channel, part) for part in known.shown(channel)]
+            # the known columns live as long as their number
+            self._stacked[channel, id(known)] = (known, np.vstack(found))
+        return self._stacked[channel, id(known)][1][:, place]
+
+    def _within_products(self, channel: int, part: Part) -> Array:
+        """Return inner products of deviations with those of a part of known columns."""
+        key = (channel, id(part))
+        if key not in self._within:
+            own = self.part.columns.channels[channel].within
+            product = part.columns.channels[channel].within.T @ own
+            self._within[key] = (part, product)  # the part lives as long as its number
+        return self._within[key][1]
 
     def _own_within(self, channel: int, number: int) -> Array:
         if (channel, number) not in self._own:
