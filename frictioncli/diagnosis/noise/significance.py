@@ -41,6 +41,9 @@ a catalogue and some shapes of each."""
 _DRAWS = 2000
 """Draws of white noise by which they are counted."""
 
+_ZERO = 1e-12
+"""Length below which a column counts as zero."""
+
 _SHORT = 1e-9
 """Share of the longest column's length below which one counts as nothing."""
 
@@ -118,9 +121,7 @@ def effective_shapes(inner: Array, width: int) -> float:
     values, vectors = np.linalg.eigh(inner / np.outer(size, size))
     kept = values > _SHORT
     columns = np.sqrt(values[kept])[:, np.newaxis] * vectors[:, kept].T
-    groups = np.split(columns, len(inner) // width, axis=1)
-    spans = [orthonormal_basis(np.asfortranarray(one), tolerance=1e-4) for one in groups]
-    spans = [one for one in spans if one.shape[1]]
+    spans = _spans(columns, width)
     if not spans:
         return 1.0
     generator = np.random.default_rng(0)
@@ -136,6 +137,17 @@ def effective_shapes(inner: Array, width: int) -> float:
     lengths = np.add.reduceat(squares, np.cumsum(ranks) - ranks, axis=1)
     number = np.sum(lengths > special.chdtri(ranks, _LEVEL) * (1 - 1e-9), axis=1)
     return float(np.sum(np.mean(1 / number.reshape(noise.shape[:2]), axis=1)))
+
+
+def _spans(columns: Array, width: int) -> list[Array]:
+    """Return an orthonormal basis of the columns of each shape, of those that have any."""
+    if width == 1:
+        length = np.linalg.norm(columns, axis=0)
+        unit = columns[:, length > _ZERO] / length[length > _ZERO]
+        return np.split(unit, unit.shape[1], axis=1) if unit.size else []
+    groups = np.split(columns, columns.shape[1] // width, axis=1)
+    spans = [orthonormal_basis(np.asfortranarray(one), tolerance=1e-4) for one in groups]
+    return [one for one in spans if one.shape[1]]
 
 
 def log_bayes_factor(grid: Array, freedom: int) -> float:
