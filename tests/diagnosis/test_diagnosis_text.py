@@ -166,8 +166,7 @@ def test_the_larger_parts_of_an_empirical_term_are_told_with_their_sizes():
         "It varies with angle and temperature in the friction (0.50 N·m RMS, 0.40 to 0.70) and"
         " speed in the load (0.30 N·m RMS, 0.40 to 0.70). It names no cause"
     ) in empirical_text(diagnosis(empirical=gain))
-    small = structs.replace(gain, is_structure=False)
-    assert empirical_text(diagnosis(empirical=small)).startswith(
+    assert empirical_text(diagnosis(discrepancy=gain)).startswith(
         "An empirical term for the smooth error that any model has reduces the misfit on pairs not"
         " used for fitting from 0.80 to 0.50 N·m (RMS): 40 % less (30 to 50). It names no cause"
     )

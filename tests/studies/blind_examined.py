@@ -132,7 +132,7 @@ def _parameters(model: Mapping[str, Any]) -> Mapping[str, Any]:
 
 def _said(said: Said, *, with_sizes: bool) -> dict[str, object]:
     diagnosis = said.diagnosis
-    gain, term = diagnosis.get("gain") or {}, diagnosis.get("empirical") or {}
+    gain, term = diagnosis.get("gain") or {}, _term(diagnosis)
     return {
         "verdict": diagnosis["verdict"],
         "causes_json": _json([_cause(one) for one in diagnosis["causes"] if one["effects"]]),
@@ -147,6 +147,11 @@ def _said(said: Said, *, with_sizes: bool) -> dict[str, object]:
         "floor_said": f"{gain['noise_floor']:.5g}" if gain else "",
         "diagnosed": f"{said.seconds:.2f}",
     }
+
+
+def _term(diagnosis: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return what the empirical term gains, of structure or of the smooth error of any joint."""
+    return diagnosis.get("empirical") or diagnosis.get("discrepancy") or {}
 
 
 def _cause(cause: Mapping[str, Any]) -> dict[str, Any]:

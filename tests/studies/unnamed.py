@@ -180,7 +180,7 @@ def _examined(law: Law, protocol: str, seed: int, size: float) -> Case:
     seconds = time.perf_counter() - began
     document = diagnosis_document(diagnosis, SETTINGS)
     left, left_by_base = _left(rows, bare)
-    gain, own = document.empirical, without.empirical
+    gain, own = document.empirical, diagnosis_document(without, SETTINGS).empirical
     before = _after(diagnosis)
     said = _said(document)
     return Case(
@@ -199,7 +199,7 @@ def _examined(law: Law, protocol: str, seed: int, size: float) -> Case:
         before=before,
         after=gain.rmse_after if gain else before,
         known=_after(without),
-        bare_gain=own.gain.reduction if own else 0.0,
+        bare_gain=own.reduction if own else 0.0,
         wrong_names=tuple(
             cause.fit.effect.name for cause in diagnosis.causes if not cause.fit.effect.measurement
         ),

@@ -29,8 +29,9 @@ a share of the improvement by knowing the law, which is that of the same joint d
 It can exceed 1, since the term also absorbs what the nuisances leave.
 
 Nuisances may leave more than the margin. A form that beats all others is evidence of something
-else; a free function is not. It is used only where it clearly explains more than margin and 0.75 %
-of the friction together (root sum of squares, 0.47 N·m here), which any joint may have.
+else; a free function is not. It is structure only where it clearly explains more than margin and
+0.75 % of the friction together (root sum of squares, 0.47 N·m here), which any joint may have.
+Where it explains less, it is predicted (`discrepancy` in `diagnosis.json`) and does not count here.
 
 Where a joint heats up and cools down only once or twice, an effect of temperature is hard to
 distinguish from drift. So the noise is estimated again with each form, and a form needs very strong

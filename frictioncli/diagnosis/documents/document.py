@@ -201,6 +201,8 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
         How much less the extended model misses; none without causes.
     empirical : EmpiricalGainRecord or None
         What the empirical term of the extended model gains; none where there is no such term.
+    discrepancy : EmpiricalGainRecord or None
+        The same where the term is no structure, but the smooth error that is expected of any model.
     remainder : RemainderRecord or None
         What the extended model still misses; none where it is hardly more than noise.
     detectable : mapping of str to (float or None)
@@ -235,6 +237,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     load_margin: float | None = None
     gain: GainRecord | None
     empirical: EmpiricalGainRecord | None = None
+    discrepancy: EmpiricalGainRecord | None = None
     remainder: RemainderRecord | None = None
     detectable: Mapping[EffectName, float | None]
     undetectable: Mapping[str, str] = {}

@@ -15,6 +15,8 @@ from frictioncli.model.document import ParameterEstimate
 
 _NOTE = "empirical: what was measured and no known cause explains; not a cause"
 
+_NO_STRUCTURE = "empirical: the smooth error that any model has; neither structure nor a cause"
+
 _EQUATION = (
     "w(x) (sum of forms + sum_k gamma_k prod_j cos(pi k_j u_j) + du/dp b), gamma_k: coefficients of"
     " functions, b: base_changes and gravity_changes;"
@@ -111,8 +113,6 @@ class EmpiricalGainRecord(msgspec.Struct, frozen=True, kw_only=True):
         [N·m] within which it is valid.
     parts : tuple of LocatedRecord
         The forms that describe it, or else its functions; the largest first.
-    is_structure : bool
-        Whether it is more than the smooth error that is expected of any model.
     """
 
     size: float
@@ -125,7 +125,6 @@ class EmpiricalGainRecord(msgspec.Struct, frozen=True, kw_only=True):
     noise_floor: float
     ranges: Mapping[str, Range]
     parts: tuple[LocatedRecord, ...] = ()
-    is_structure: bool = True
 
     @property
     def forms(self) -> tuple[LocatedRecord, ...]:
@@ -149,6 +148,7 @@ def term_record(
     """
     term = found.term
     return EmpiricalRecord(
+        note=_NOTE if found.is_structure else _NO_STRUCTURE,
         forms=term.forms,
         functions=term.functions,
         ranges=term.ranges,
@@ -187,7 +187,6 @@ def gain_record(
         noise_floor=gain.floor,
         ranges=found.term.ranges,
         parts=tuple(_located_record(one, units, found, delay_is_stated) for one in found.parts),
-        is_structure=found.is_structure,
     )
 
 

@@ -30,6 +30,7 @@ from frictioncli.diagnosis.documents.parameters import (
 from frictioncli.diagnosis.documents.ramps_record import ramps_record
 from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.documents.structure_record import (
+    discrepancy_record,
     empirical_record,
     known_interval,
     structure_record,
@@ -95,6 +96,7 @@ def diagnosis_document(
             noise_floor=gain.floor,
         ),
         empirical=empirical_record(diagnosis),
+        discrepancy=discrepancy_record(diagnosis),
         remainder=remainder_record(diagnosis),
         detectable=detectable,
         undetectable=undetectable_reasons(diagnosis, settings, detectable),

@@ -210,7 +210,7 @@ def empirical_text(document: DiagnosisDocument) -> str:
     document : DiagnosisDocument
         The joint's diagnosis.
     """
-    found, unit = document.empirical, document.torque_unit
+    found, unit = document.empirical or document.discrepancy, document.torque_unit
     if found is None:
         return ""
     on = "on pairs not used for fitting"
@@ -222,7 +222,7 @@ def empirical_text(document: DiagnosisDocument) -> str:
     if found.forms and (document.structure is None or document.structure.formula is None):
         what = f" It describes {', and '.join(one.description or '' for one in found.forms)}."
     stands_for = "the unexplained part"
-    if not found.is_structure and document.structure is None:
+    if document.empirical is None:
         stands_for = "the smooth error that any model has"
     elif not found.forms:
         what = f" It varies with {list_text(_parts(found, unit))}."

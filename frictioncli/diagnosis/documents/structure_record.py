@@ -9,6 +9,7 @@ from frictioncli.diagnosis.documents.empirical_record import (
     gain_record,
 )
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
+from frictioncli.diagnosis.empirical.estimate import Empirical
 from frictioncli.diagnosis.empirical.next_experiment import experiment
 from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.search.axis_columns import friction_tells_load, load_over_angle
@@ -93,18 +94,32 @@ def known_interval(interval: tuple[float, float]) -> tuple[float, float] | None:
 
 
 def empirical_record(diagnosis: Diagnosis) -> EmpiricalGainRecord | None:
-    """Return the empirical term of a diagnosis, with its forms in words; None without one.
+    """Return the empirical term of structure, with its forms in words; None without one.
 
     Parameters
     ----------
     diagnosis : Diagnosis
         The diagnosis.
     """
-    if diagnosis.empirical is None:
-        return None
+    found = diagnosis.empirical
+    return _gain_record(diagnosis, found) if found is not None and found.is_structure else None
+
+
+def discrepancy_record(diagnosis: Diagnosis) -> EmpiricalGainRecord | None:
+    """Return the empirical term of the smooth error that any model has; None without one.
+
+    Parameters
+    ----------
+    diagnosis : Diagnosis
+        The diagnosis.
+    """
+    found = diagnosis.empirical
+    return None if found is None or found.is_structure else _gain_record(diagnosis, found)
+
+
+def _gain_record(diagnosis: Diagnosis, found: Empirical) -> EmpiricalGainRecord:
     stated = any(one.fit.effect.name == DELAY for one in diagnosis.causes)
-    units = TorqueUnits.of_diagnosis(diagnosis)
-    return gain_record(diagnosis.empirical, units, delay_is_stated=stated)
+    return gain_record(found, TorqueUnits.of_diagnosis(diagnosis), delay_is_stated=stated)
 
 
 def _forms(diagnosis: Diagnosis) -> tuple[LocatedRecord, ...]:
