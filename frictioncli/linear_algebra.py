@@ -160,12 +160,23 @@ def orthonormal_basis(columns: Array, *, tolerance: float) -> Array:
     >>> orthonormal_basis(np.array([[1.0, 2.0], [1.0, 2.0]]), tolerance=1e-7).shape
     (2, 1)
     """
-    size = np.linalg.norm(columns, axis=0)
-    kept = columns[:, size > 1e-12] / size[size > 1e-12]
+    kept = unit_columns(columns)
     if not kept.shape[1]:
         return np.empty((len(columns), 0))
     left, strength, _ = np.linalg.svd(kept, full_matrices=False)
     return np.asarray(left[:, strength > tolerance * strength[0]])
+
+
+def unit_columns(columns: Array) -> Array:
+    """Return columns at unit length, without those shorter than 1e-12.
+
+    Parameters
+    ----------
+    columns : ndarray, shape (rows, columns)
+        The columns, in any units.
+    """
+    size = np.linalg.norm(columns, axis=0)
+    return columns[:, size > 1e-12] / size[size > 1e-12]
 
 
 def inverse_and_determinant(gram: Array) -> tuple[Array, float]:

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from frictioncli.diagnosis.data.worst_misfits import worst_misfits
-from frictioncli.diagnosis.empirical.estimate import empirical_term
+from frictioncli.diagnosis.empirical.estimate import as_structure, empirical_term
 from frictioncli.diagnosis.empirical.on_new_run import structure_on_new_run
 from frictioncli.diagnosis.empirical.unexplained import unexplained
 from frictioncli.diagnosis.fit.extension import Extension, extend, measured_gain, rms_misfit
@@ -192,7 +192,7 @@ def _diagnosed(
         seed=settings.seed,
         structure=named.structure,
     )
-    evident = empirical if empirical is not None and empirical.is_structure else None
+    evident = as_structure(empirical)
     structure = unexplained(named.structure, causes, evident, step, settings.alpha)
     if new and structure is None and evident is None and not appeared:
         begun = structure_on_new_run(

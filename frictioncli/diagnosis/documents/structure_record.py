@@ -9,7 +9,7 @@ from frictioncli.diagnosis.documents.empirical_record import (
     gain_record,
 )
 from frictioncli.diagnosis.documents.torque_units import TorqueUnits
-from frictioncli.diagnosis.empirical.estimate import Empirical
+from frictioncli.diagnosis.empirical.estimate import Empirical, as_structure
 from frictioncli.diagnosis.empirical.next_experiment import experiment
 from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.search.axis_columns import friction_tells_load, load_over_angle
@@ -101,8 +101,7 @@ def empirical_record(diagnosis: Diagnosis) -> EmpiricalGainRecord | None:
     diagnosis : Diagnosis
         The diagnosis.
     """
-    found = diagnosis.empirical
-    return _gain_record(diagnosis, found) if found is not None and found.is_structure else None
+    return _gain_record(diagnosis, as_structure(diagnosis.empirical))
 
 
 def discrepancy_record(diagnosis: Diagnosis) -> EmpiricalGainRecord | None:
@@ -114,10 +113,12 @@ def discrepancy_record(diagnosis: Diagnosis) -> EmpiricalGainRecord | None:
         The diagnosis.
     """
     found = diagnosis.empirical
-    return None if found is None or found.is_structure else _gain_record(diagnosis, found)
+    return None if as_structure(found) else _gain_record(diagnosis, found)
 
 
-def _gain_record(diagnosis: Diagnosis, found: Empirical) -> EmpiricalGainRecord:
+def _gain_record(diagnosis: Diagnosis, found: Empirical | None) -> EmpiricalGainRecord | None:
+    if found is None:
+        return None
     stated = any(one.fit.effect.name == DELAY for one in diagnosis.causes)
     return gain_record(found, TorqueUnits.of_diagnosis(diagnosis), delay_is_stated=stated)
 

@@ -119,6 +119,17 @@ class Empirical:
     is_structure: bool = True
 
 
+def as_structure(found: Empirical | None) -> Empirical | None:
+    """Return a term if it is structure; None if it is what any joint has, or there is none.
+
+    Parameters
+    ----------
+    found : Empirical or None
+        The term.
+    """
+    return found if found is not None and found.is_structure else None
+
+
 NewRun = tuple[Problem, Callable[[Extension], Extension]]
 """Rows of a run that was kept out, and what of base and causes holds there."""
 

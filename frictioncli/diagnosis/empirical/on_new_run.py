@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.empirical.estimate import Empirical, empirical_term
+from frictioncli.diagnosis.empirical.estimate import Empirical, as_structure, empirical_term
 from frictioncli.diagnosis.fit.extension import Extension, misfits
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
@@ -102,8 +102,7 @@ def structure_on_new_run(
         structure=found,
         base_is_of_others=True,
     )
-    is_structure = term is not None and term.is_structure
-    return replace(found, only_on=problem.runs[-1]), term if is_structure else None
+    return replace(found, only_on=problem.runs[-1]), as_structure(term)
 
 
 def _at_temperatures_of(seen: Problem, new: Problem) -> Problem | None:

@@ -29,7 +29,7 @@ from scipy import special
 
 from frictioncli.arrays import Array
 from frictioncli.distributions import f_exceeded, f_tail
-from frictioncli.linear_algebra import orthonormal_basis
+from frictioncli.linear_algebra import orthonormal_basis, unit_columns
 
 _PRIOR_VARIANCE = 100.0
 """Prior variance g of a coefficient, in units of its sampling variance."""
@@ -40,9 +40,6 @@ a catalogue and some shapes of each."""
 
 _DRAWS = 2000
 """Draws of white noise by which they are counted."""
-
-_ZERO = 1e-12
-"""Length below which a column counts as zero."""
 
 _SHORT = 1e-9
 """Share of the longest column's length below which one counts as nothing."""
@@ -142,8 +139,7 @@ def effective_shapes(inner: Array, width: int) -> float:
 def _spans(columns: Array, width: int) -> list[Array]:
     """Return an orthonormal basis of the columns of each shape, of those that have any."""
     if width == 1:
-        length = np.linalg.norm(columns, axis=0)
-        unit = columns[:, length > _ZERO] / length[length > _ZERO]
+        unit = unit_columns(columns)
         return np.split(unit, unit.shape[1], axis=1) if unit.size else []
     groups = np.split(columns, columns.shape[1] // width, axis=1)
     spans = [orthonormal_basis(np.asfortranarray(one), tolerance=1e-4) for one in groups]
