@@ -46,6 +46,19 @@ def test_what_falls_beside_running_in_is_a_part_of_it_or_the_cause(runs, smaller
     assert (first.standing, set(second.effects)) == ("undetermined", {"run_in", smaller[0]})
 
 
+def test_what_stands_out_and_is_too_small_for_a_name_may_be_the_cause_of_the_fall(runs):
+    _, one_run = runs
+    falling = of("drift", -1.0, 1.0)
+    for visible, effects in ((0.5, {"drift", "run_in"}), (0.3, {"drift"})):
+        ran_in = replace(of("run_in", 2.0, visible), standing="visible", reason="small")
+        first, second = with_one_decay([falling, ran_in], one_run)
+        assert (first.standing, set(first.effects)) == ("named", effects)
+        assert second is ran_in
+    # nothing has a name: nothing is told
+    nameless = replace(falling, standing="visible", reason="small")
+    assert with_one_decay([nameless, ran_in], one_run) == (nameless, ran_in)
+
+
 def test_what_does_not_only_fall_is_another_cause(runs):
     two_runs, one_run = runs
     ran_in = of("run_in", 2.0, 1.0)

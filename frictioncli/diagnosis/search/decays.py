@@ -37,21 +37,24 @@ _ONE_DECAY = "friction decays once, and the other cause need not decay exactly b
 def with_one_decay(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
     """Return causes of which only the largest keeps its name of those that are one decay.
 
-    A smaller one that is a good part of it may be the cause as well, and joins its set.
+    A smaller one that is a good part of it may be the cause as well, and joins its set; so does one
+    that stands out and is too small for a name.
 
     Parameters
     ----------
     causes : sequence of Cause
-        Causes that are named.
+        Causes that are named or visible.
     problem : Problem
         The rows seen.
     """
     decaying = _decaying(causes, problem)
-    if len(decaying) < 2:
+    named = [one for one in decaying if one.standing == "named"]
+    if not named or len(decaying) < 2:
         return tuple(causes)
-    largest, *smaller = sorted(decaying, key=lambda one: -one.visible)
+    largest = max(named, key=lambda one: one.visible)
+    smaller = [one for one in decaying if one is not largest]
     rivals = [one for one in smaller if one.visible > MOST_LEFT * largest.visible]
-    judged = {one.fit.effect.name: _lost(one) for one in smaller}
+    judged = {one.fit.effect.name: _lost(one) for one in named}
     judged[largest.fit.effect.name] = _in_set(largest, rivals)
     return tuple(judged.get(one.fit.effect.name, one) for one in causes)
 

@@ -185,7 +185,8 @@ class Judging:
             uncertain -= {DELAY}
         certain = judged.without_names(uncertain, "undetermined", _UNCERTAIN)
         certain = certain.with_newer(without_slow_recovery(certain.named, self.problem))
-        return certain.with_newer(with_one_decay(certain.named, self.problem))
+        shown = [one for one in certain.causes if one.standing in ("named", "visible")]
+        return certain.with_newer(with_one_decay(shown, self.problem))
 
 
 def names_of(causes: Sequence[Cause]) -> set[str]:
