@@ -11,7 +11,7 @@ import numpy as np
 
 from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.fit.columns import ModelColumns
-from frictioncli.diagnosis.noise.spectra import STRENGTHS, NoiseIndex, Spectra
+from frictioncli.diagnosis.noise.spectra import STRENGTHS, InverseCovariances, NoiseIndex, Spectra
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,23 +53,20 @@ class NoiseModels:
 
     spectra: tuple[Spectra, Spectra]
     indices: tuple[NoiseIndex, ...]
-    _precisions: dict[int, Array] = field(default_factory=dict)
+    _inverses: dict[int, InverseCovariances] = field(default_factory=dict)
 
-    def precisions(self, channel: int) -> Array:
-        """Return the precision of each mode, shape (correlation times, strengths, pairs).
-
-        One over the variances at scale 1, at all strengths of the drift.
+    def inverses(self, channel: int) -> InverseCovariances:
+        """Return the inverse covariances of scaled pair means at scale 1.
 
         Parameters
         ----------
         channel : int
             0 for friction, 1 for load.
         """
-        if channel not in self._precisions:
-            values = np.array([one.values for one in self.spectra[channel].spectra])
-            strengths = STRENGTHS[:, np.newaxis]
-            self._precisions[channel] = 1 / (1 + strengths * values[:, np.newaxis])
-        return self._precisions[channel]
+        if channel not in self._inverses:
+            spectra = self.spectra[channel]
+            self._inverses[channel] = InverseCovariances.of(spectra, self.indices)
+        return self._inverses[channel]
 
     def time_and_precision(self, channel: int, number: int) -> tuple[int, Array]:
         """Return the correlation time of a noise model, and the precision of each mode.
@@ -123,7 +120,6 @@ class Part:
     noises: NoiseModels
     shown: tuple[int, ...] = (0, 1)
     _modes: dict[tuple[int, int], Array] = field(default_factory=dict)
-    _at_all_times: dict[int, Array] = field(default_factory=dict)
 
     def take(self, chosen: slice | list[int]) -> "Part":
         """Return some of the columns."""
@@ -140,13 +136,6 @@ class Part:
             modes[:, present] = spectra.modes_at(time, means[:, present])
             self._modes[channel, time] = modes
         return self._modes[channel, time]
-
-    def at_all_times(self, channel: int) -> Array:
-        """Return the same at all correlation times, shape (times, pairs, columns)."""
-        if channel not in self._at_all_times:
-            times = range(len(self.noises.spectra[channel].spectra))
-            self._at_all_times[channel] = np.stack([self.modes(channel, time) for time in times])
-        return self._at_all_times[channel]
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,7 +211,7 @@ class TransformedColumns:
         return np.vstack([one.columns.channels[channel].within.T @ columns for one in shown])
 
     def combined(self, channel: int, combination: Array) -> Array:
-        """Return a combination of the columns in the eigenvectors, shape (times, pairs).
+        """Return the scaled pair means of a combination of the columns, shape (pairs,).
 
         Parameters
         ----------
@@ -238,8 +227,7 @@ class TransformedColumns:
             for one, share in shares
             if channel in one.shown
         )
-        # the combination alone is transformed, and not each of its columns
-        return np.array(self.noises.spectra[channel].all_modes(np.asarray(means)))
+        return self.noises.spectra[channel].scaled(np.asarray(means))
 
     def beside(self, own: Sequence[Part]) -> "TransformedColumns":
         """Return the columns with further ones before the last one, the misfit.

@@ -208,9 +208,7 @@ def _under_each_model(
     ndarray, shape (noise models,), and ndarray, shape (noise models, base)
         Of the pair means under each noise model.
     """
-    modes = columns.combined(channel, combination)
-    weighted = columns.noises.precisions(channel) * modes[:, np.newaxis]
-    whole = (weighted @ modes[:, :, np.newaxis])[:, :, 0]
-    right = weighted @ columns.parts[0].at_all_times(channel)[:, :, :base]
-    time, strength = np.array(columns.noises.indices).T
-    return whole[time, strength], right[time, strength]
+    noises, first = columns.noises, columns.parts[0].columns.channels[channel]
+    scaled = columns.combined(channel, combination)
+    weighted = noises.inverses(channel).times(scaled)
+    return weighted @ scaled, weighted @ noises.spectra[channel].scaled(first.means[:, :base])
