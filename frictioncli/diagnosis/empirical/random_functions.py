@@ -81,6 +81,10 @@ def functions_of(
         Logarithm of the amplitude of each.
     """
     ranges = in_coordinates(ranges_seen(problem.table))
+    base = np.vstack(base_rows(problem))
+    length = np.linalg.norm(base, axis=0)
+    length = np.where(length > 0, length, 1.0)
+    solution = np.linalg.pinv(base / length, rcond=RANK) / length[:, np.newaxis]
     found = []
     for component, size in zip(components, np.exp(amplitude), strict=True):
         if component.axes in (FORM, FINE, SPEED_RIPPLE):
@@ -91,7 +95,9 @@ def functions_of(
         values = series.weights * series.columns(problem.table, ranges)
         zeros = np.zeros_like(values)
         both = Basis(values, zeros) if component.channel == "friction" else Basis(zeros, values)
-        taken, left = _left(problem, both)
+        columns = np.vstack(both)
+        taken = solution @ columns
+        left = columns - base @ taken
         squares = float(np.sum(np.square(left)))
         if squares <= 0:
             continue
@@ -129,16 +135,6 @@ def function_of_form(fitted: FittedColumns, form: Form, shape: Shape) -> Functio
         taken=taken,
         columns=left,
     )
-
-
-def _left(problem: Problem, both: Basis) -> tuple[Array, Array]:
-    """Return what the base takes of columns, and what it leaves of them, friction above load."""
-    base = np.vstack(base_rows(problem))
-    length = np.linalg.norm(base, axis=0)
-    length = np.where(length > 0, length, 1.0)
-    columns = np.vstack(both)
-    taken = np.linalg.lstsq(base / length, columns, rcond=RANK)[0] / length[:, np.newaxis]
-    return taken, columns - base @ taken
 
 
 def term_of(problem: Problem, functions: Sequence[Function], coefficients: Array) -> EmpiricalTerm:
