@@ -64,12 +64,9 @@ class BaseProducts:
 
     @classmethod
     def _in_channel(cls, part: Part, base: int, channel: int) -> "BaseProducts":
-        noises = part.noises
-        own = np.empty((len(noises.indices), base, base))
-        for number in range(len(own)):
-            time, precision = noises.time_and_precision(channel, number)
-            scaled = part.modes(channel, time)[:, :base] * np.sqrt(precision)[:, np.newaxis]
-            own[number] = scaled.T @ scaled
+        noises, means = part.noises, part.columns.channels[channel].means[:, :base]
+        scaled = noises.spectra[channel].scaled(means)
+        own = scaled.T @ noises.inverses(channel).times(scaled)
         return cls.of(own)
 
     def explained(self, right: Array) -> Array:

@@ -88,13 +88,11 @@ class NoiseModels:
     def variance(self, channel: int, number: int) -> Array:
         """Return the variance of each mode under a noise model at scale 1, shape (pairs,)."""
         time, strength = self.indices[number]
-        return np.asarray(1 + STRENGTHS[strength] * self.spectra[channel].spectra[time].values)
+        return np.asarray(1 + STRENGTHS[strength] * self.spectra[channel].spectra[time].eigen[0])
 
     def determinants(self, channel: int) -> Array:
         """Return the logarithm of the determinant of each noise model, shape (noise models,)."""
-        return np.array(
-            [np.sum(np.log(self.variance(channel, i))) for i in range(len(self.indices))]
-        )
+        return self.inverses(channel).determinants
 
     def drifts(self, channel: int) -> Array:
         """Return the variance of the drift within the runs at scale 1, shape (noise models,)."""

@@ -210,5 +210,5 @@ def _under_each_model(
     """
     noises, first = columns.noises, columns.parts[0].columns.channels[channel]
     scaled = columns.combined(channel, combination)
-    weighted = noises.inverses(channel).times(scaled)
+    weighted = noises.inverses(channel).times(scaled[:, np.newaxis])[:, :, 0]
     return weighted @ scaled, weighted @ noises.spectra[channel].scaled(first.means[:, :base])

@@ -6,20 +6,21 @@ The covariance of a channel's pair means is
 
 with a known diagonal :math:`H` of the white part, the drift's correlation
 :math:`R_\theta = e^{-|t_i - t_j| / \theta}` within each run (an Ornstein-Uhlenbeck process), its
-variance :math:`\rho` relative to the white part and the scale :math:`a`. One eigendecomposition
-
-.. math:: H^{-1/2} R_\theta H^{-1/2} = U \Lambda U^\mathsf{T}
-
-for each :math:`\theta` makes every :math:`V` diagonal,
-:math:`U^\mathsf{T} H^{-1/2} V H^{-1/2} U = a (I + \rho \Lambda)`, so that many noise models can be
-tried on many candidate explanations at little cost. The inverse :math:`T` of
-:math:`H^{-1/2} R_\theta H^{-1/2}` is tridiagonal, so that a single column takes less time yet with
+variance :math:`\rho` relative to the white part and the scale :math:`a`. The inverse :math:`T` of
+:math:`H^{-1/2} R_\theta H^{-1/2}` is tridiagonal, so that many noise models can be tried at little
+cost with
 
 .. math:: (I + \rho T^{-1})^{-1} = I - \rho (T + \rho I)^{-1} .
+
+One eigendecomposition :math:`T^{-1} = U \Lambda U^\mathsf{T}` for a :math:`\theta` that is chosen
+makes every :math:`V` diagonal,
+:math:`U^\mathsf{T} H^{-1/2} V H^{-1/2} U = a (I + \rho \Lambda)`, so that many candidate
+explanations can be tried.
 """
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import eigh_tridiagonal, lapack
@@ -44,31 +45,73 @@ STRENGTHS = np.array([0.0, 0.1, 0.4, 1.6, 6.0, 25.0, 100.0, 1000.0])
 """Variances of the drift relative to the white part."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, kw_only=True)
 class Spectrum:
-    """Eigendecomposition of the drift's correlation at one correlation time.
+    """The drift's correlation at one correlation time, by its inverse that is tridiagonal.
 
     Attributes
     ----------
     time : float
         Correlation time. [s]
-    values : ndarray, shape (pairs,)
-        Eigenvalues, run after run.
-    vectors : tuple of ndarray
-        Eigenvectors of each run, shape (pairs of the run, pairs of the run).
+    runs : tuple of slice
+        Pairs of each run.
+    diagonal, beside : ndarray, shape (pairs,)
+        The inverse: its diagonal, and what stands beside it, the last of each run zero.
+    factor : (ndarray, ndarray), shape (pairs,) and one less
+        Its Cholesky factor.
     within : float
         Mean square of the drift about its mean over a run, as a share of its variance.
-    diagonal, beside : ndarray, shape (pairs,)
-        The inverse that is tridiagonal: its diagonal, and what stands beside it, the last of each
-        run zero.
     """
 
     time: float
-    values: Array
-    vectors: tuple[Array, ...]
-    within: float
+    runs: tuple[slice, ...]
     diagonal: Array
     beside: Array
+    factor: tuple[Array, Array]
+    within: float
+
+    @classmethod
+    def of(
+        cls, time: Array, correlation_time: float, profile: Array, runs: tuple[slice, ...]
+    ) -> "Spectrum":
+        """Return the correlation of a Markov process at the times of the pairs."""
+        diagonal, beside = np.ones(len(time)), np.zeros(len(time))
+        root = np.sqrt(profile)
+        for part in runs:
+            step = np.clip(np.diff(time[part]) / correlation_time, _SHORTEST, _LONGEST)
+            both = 1.0 / np.expm1(2 * step)
+            diagonal[part][1:] += both
+            diagonal[part][:-1] += both
+            beside[part][:-1] = -np.exp(step) * both * root[part][1:] * root[part][:-1]
+        diagonal *= profile
+        factor = _factor(diagonal, beside)
+        solved, _ = lapack.dpttrs(*factor, root)
+        means = [float(root[part] @ solved[part]) / len(root[part]) for part in runs]
+        within = 1.0 - sum(means) / len(root)
+        return cls(
+            time=correlation_time,
+            runs=runs,
+            diagonal=diagonal,
+            beside=beside,
+            factor=factor,
+            within=within,
+        )
+
+    @cached_property
+    def eigen(self) -> tuple[Array, tuple[Array, ...]]:
+        """Eigenvalues of the correlation, run after run, and eigenvectors of each run."""
+        decomposed = [
+            eigh_tridiagonal(self.diagonal[part], self.beside[part][:-1], check_finite=False)
+            for part in self.runs
+        ]
+        inverses, vectors = zip(*decomposed, strict=True)
+        return 1.0 / np.concatenate(inverses), vectors
+
+
+def _factor(diagonal: Array, beside: Array) -> tuple[Array, Array]:
+    """Return the Cholesky factor of a matrix that is tridiagonal."""
+    factor, coupling, _ = lapack.dpttrf(diagonal, beside[:-1])
+    return factor, coupling
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,7 +147,7 @@ class Spectra:
         return np.concatenate(
             [
                 vectors.T @ scaled[part]
-                for part, vectors in zip(self.runs, spectrum.vectors, strict=True)
+                for part, vectors in zip(self.runs, spectrum.eigen[1], strict=True)
             ]
         )
 
@@ -117,7 +160,7 @@ class Spectra:
         return np.concatenate(
             [
                 vectors @ modes[part]
-                for part, vectors in zip(self.runs, spectrum.vectors, strict=True)
+                for part, vectors in zip(self.runs, spectrum.eigen[1], strict=True)
             ]
         )
 
@@ -132,27 +175,40 @@ class InverseCovariances:
         Variance of the drift of each, relative to the white part.
     factor : (ndarray, ndarray), shape (noise models * pairs,) and one less
         Cholesky factor of :math:`T + \rho I`, noise model after noise model.
+    determinants : ndarray, shape (noise models,)
+        Logarithm of the determinant of each covariance.
     """
 
     strengths: Array
     factor: tuple[Array, Array]
+    determinants: Array
 
     @classmethod
     def of(cls, spectra: Spectra, indices: Iterable[NoiseIndex]) -> "InverseCovariances":
         """Return those of the noise models of a channel."""
         times, numbers = zip(*indices, strict=True)
-        strengths = STRENGTHS[list(numbers)]
-        diagonal = np.array([spectra.spectra[time].diagonal for time in times])
-        beside = np.concatenate([spectra.spectra[time].beside for time in times])
-        shifted = diagonal + strengths[:, np.newaxis]
-        factor, coupling, _ = lapack.dpttrf(shifted.ravel(), beside[:-1])
-        return cls(strengths, (factor, coupling))
+        strengths, chosen = STRENGTHS[list(numbers)], [spectra.spectra[time] for time in times]
+        shifted = np.array([one.diagonal for one in chosen]) + strengths[:, np.newaxis]
+        factor = _factor(shifted.ravel(), np.concatenate([one.beside for one in chosen]))
+        pivots = factor[0].reshape(shifted.shape) / np.array([one.factor[0] for one in chosen])
+        return cls(strengths, factor, np.sum(np.log(pivots), axis=1))
 
     def times(self, scaled: Array) -> Array:
-        """Return each times a column of scaled pair means, shape (noise models, pairs)."""
+        """Return each times columns of scaled pair means.
+
+        Parameters
+        ----------
+        scaled : ndarray, shape (pairs, columns)
+            The columns.
+
+        Returns
+        -------
+        ndarray, shape (noise models, pairs, columns)
+        """
         count = len(self.strengths)
-        solved, _ = lapack.dpttrs(*self.factor, np.tile(scaled, count))
-        return np.asarray(scaled - self.strengths[:, np.newaxis] * solved.reshape(count, -1))
+        solved, _ = lapack.dpttrs(*self.factor, np.tile(scaled, (count, 1)))
+        drift = self.strengths[:, np.newaxis, np.newaxis] * solved.reshape(count, *scaled.shape)
+        return np.asarray(scaled - drift)
 
 
 def spectra_of(
@@ -194,7 +250,7 @@ def spectra_of(
     times = np.geomspace(shortest, max(longest, 2 * shortest), _TIMES)
     alike = (one.spectra for one in before if np.array_equal(one.profile, profile))
     spectra = next(alike, None) or tuple(
-        _spectrum(layout.time, float(time), profile, runs) for time in times
+        Spectrum.of(layout.time, float(time), profile, runs) for time in times
     )
     return Spectra(
         profile=profile,
@@ -202,37 +258,6 @@ def spectra_of(
         white=float(np.mean(white)),
         runs=runs,
         spectra=spectra,
-    )
-
-
-def _spectrum(
-    time: Array, correlation_time: float, profile: Array, runs: tuple[slice, ...]
-) -> Spectrum:
-    values, vectors, squares = [], [], 0.0
-    inverses: list[Array] = []
-    couplings: list[Array] = []
-    for part in runs:
-        root = np.sqrt(profile[part])
-        step = np.clip(np.diff(time[part]) / correlation_time, _SHORTEST, _LONGEST)
-        # the drift is a Markov process: the inverse of its correlation is tridiagonal
-        diagonal, beside = np.ones(len(root)), 1.0 / np.expm1(2 * step)
-        diagonal[1:] += beside
-        diagonal[:-1] += beside
-        coupling = -np.exp(step) * beside * root[1:] * root[:-1]
-        inverses.append(diagonal * profile[part])
-        couplings.append(np.append(coupling, 0.0))
-        inverse, eigenvectors = eigh_tridiagonal(inverses[-1], coupling, check_finite=False)
-        values.append(1.0 / inverse)
-        vectors.append(eigenvectors)
-        correlation = values[-1] @ np.square(root @ eigenvectors)
-        squares += len(root) - float(correlation) / len(root)
-    return Spectrum(
-        time=correlation_time,
-        values=np.concatenate(values),
-        vectors=tuple(vectors),
-        within=squares / len(profile),
-        diagonal=np.concatenate(inverses),
-        beside=np.concatenate(couplings),
     )
 
 
