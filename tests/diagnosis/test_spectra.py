@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from frictioncli.diagnosis.noise.spectra import STRENGTHS, spectra_of
+from frictioncli.diagnosis.noise.spectra import STRENGTHS, InverseCovariances, spectra_of
 from tests.diagnosis.dense_noise import alike, layout
 
 PAIRS = layout(7, 5, bins=[2, 3, 4] * 4)
@@ -29,6 +29,21 @@ def test_eigenvectors_and_values_give_back_the_covariance(number, strength):
     found = root @ vectors @ np.diag(1 + strength * spectrum.values) @ vectors.T @ root
     expected = np.diag(SPECTRA.profile) + strength * alike(PAIRS, spectrum.time)
     np.testing.assert_allclose(found, expected, rtol=1e-10, atol=1e-12 * (1 + strength))
+
+
+def test_inverses_and_determinants_are_those_of_the_covariances():
+    """What is scaled has the covariance I + rho H^-1/2 R H^-1/2."""
+    indices = [(t, s) for t in range(len(SPECTRA.spectra)) for s in range(len(STRENGTHS))]
+    found = InverseCovariances.of(SPECTRA, indices)
+    columns = np.random.default_rng(2).normal(size=(12, 3))
+    root = np.sqrt(SPECTRA.profile)
+    for number, (time, strength) in enumerate(indices):
+        drift = alike(PAIRS, SPECTRA.spectra[time].time) / np.outer(root, root)
+        covariance = np.eye(12) + STRENGTHS[strength] * drift
+        np.testing.assert_allclose(
+            found.times(columns)[number], np.linalg.solve(covariance, columns), atol=1e-9
+        )
+        assert found.determinants[number] == pytest.approx(np.linalg.slogdet(covariance)[1])
 
 
 @given(

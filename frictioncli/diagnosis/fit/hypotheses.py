@@ -73,7 +73,7 @@ def hypothesis_of(
     """
     tried = informative_shapes(effect, problem) if shapes is None else list(shapes)
     bases = [problem.basis(effect, shape) for shape in tried]
-    rms = [np.sqrt(np.mean(np.square(main_channel(basis, effect)), axis=0)) for basis in bases]
+    rms = [_rms(main_channel(basis, effect)) for basis in bases]
     parts = [bases[first : first + _AT_ONCE] for first in range(0, len(bases), _AT_ONCE)]
     columns = joined(
         [reduced(problem.layout, *map(_beside, zip(*part, strict=True))) for part in parts]
@@ -88,6 +88,11 @@ def hypothesis_of(
         lower=lower,
         upper=upper,
     )
+
+
+def _rms(columns: Array) -> Array:
+    """Return the RMS of each column, shape (columns,)."""
+    return np.asarray(np.sqrt(np.einsum("ij,ij->j", columns, columns) / len(columns)))
 
 
 def _beside(columns: Sequence[Array]) -> Array:

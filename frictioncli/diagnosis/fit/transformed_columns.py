@@ -88,7 +88,7 @@ class NoiseModels:
     def variance(self, channel: int, number: int) -> Array:
         """Return the variance of each mode under a noise model at scale 1, shape (pairs,)."""
         time, strength = self.indices[number]
-        return np.asarray(1 + STRENGTHS[strength] * self.spectra[channel].spectra[time].eigen[0])
+        return np.asarray(1 + STRENGTHS[strength] * self.spectra[channel].spectra[time].values)
 
     def determinants(self, channel: int) -> Array:
         """Return the logarithm of the determinant of each noise model, shape (noise models,)."""

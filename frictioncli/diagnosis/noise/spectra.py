@@ -97,9 +97,18 @@ class Spectrum:
             within=within,
         )
 
+    @property
+    def values(self) -> Array:
+        """Eigenvalues of the correlation, run after run, shape (pairs,)."""
+        return self._eigen[0]
+
+    @property
+    def vectors(self) -> tuple[Array, ...]:
+        """Eigenvectors of each run, shape (pairs of the run, pairs of the run)."""
+        return self._eigen[1]
+
     @cached_property
-    def eigen(self) -> tuple[Array, tuple[Array, ...]]:
-        """Eigenvalues of the correlation, run after run, and eigenvectors of each run."""
+    def _eigen(self) -> tuple[Array, tuple[Array, ...]]:
         decomposed = [
             eigh_tridiagonal(self.diagonal[part], self.beside[part][:-1], check_finite=False)
             for part in self.runs
@@ -147,7 +156,7 @@ class Spectra:
         return np.concatenate(
             [
                 vectors.T @ scaled[part]
-                for part, vectors in zip(self.runs, spectrum.eigen[1], strict=True)
+                for part, vectors in zip(self.runs, spectrum.vectors, strict=True)
             ]
         )
 
@@ -160,7 +169,7 @@ class Spectra:
         return np.concatenate(
             [
                 vectors @ modes[part]
-                for part, vectors in zip(self.runs, spectrum.eigen[1], strict=True)
+                for part, vectors in zip(self.runs, spectrum.vectors, strict=True)
             ]
         )
 

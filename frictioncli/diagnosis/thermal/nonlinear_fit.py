@@ -28,7 +28,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from frictioncli.arrays import Array, Flags
-from frictioncli.diagnosis.thermal.pair_data import ThermalData
+from frictioncli.diagnosis.thermal.pair_data import RANK, LinearPart, ThermalData
 from frictioncli.effects.thermal_lag import EFFECT
 
 LEAST_DELTA, GREATEST_DELTA = 1e-3, 0.3
@@ -54,9 +54,6 @@ _STEP = 1e-4
 
 _MOST_STEPS = 40
 """Greatest number of steps of a fit from one start."""
-
-_RANK = 1e-10
-"""Singular values of unit columns below this share of the greatest count as zero."""
 
 _EDGE = 1e-3
 """A parameter nearer to a bound than this share of its range lies on it."""
@@ -150,7 +147,7 @@ def fit_structure(data: ThermalData, structure: NetworkForm) -> NonlinearFit:
     structure : NetworkForm
         The network.
     """
-    projection = _Projection(data, structure)
+    projection = _Projection(data, structure, LinearPart.of(data))
     starts = STARTS if structure.times else STARTS[:1]
     return min((projection.fitted(start) for start in starts), key=lambda one: one.cost)
 
@@ -161,9 +158,9 @@ class _Projected:
 
     excess: Array
     falling: Array
-    solution: Array
+    gamma: float
     residual: Array
-    left: Array
+    direction: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,6 +169,7 @@ class _Projection:
 
     data: ThermalData
     structure: NetworkForm
+    linear: LinearPart
 
     def fitted(self, time_constant: float) -> NonlinearFit:
         """Return the fit from a starting time constant of the gear."""
@@ -228,26 +226,22 @@ class _Projection:
         excess = self._excess(times)
         temperature = data.inputs.base[data.pairs] + excess @ coefficients
         falling = data.root_speed * np.exp(-delta * temperature)
-        means = np.column_stack([data.linear, falling]) / data.deviation
-        count = data.linear.shape[1]
-        within = np.insert(data.within[:, :count], count, 0.0, axis=1)
-        design = np.vstack([means, within])
-        target = np.concatenate([data.target / data.deviation, data.within[:, -1]])
-        length = np.linalg.norm(design, axis=0)
-        length = np.where(length > 0, length, 1.0)
-        left, size, right = np.linalg.svd(design / length, full_matrices=False)
-        kept = size > _RANK * size[0]
-        left = left[:, kept]
-        along = left.T @ target
-        solution = (right[kept].T @ (along / size[kept])) / length
-        residual = np.append(target - left @ along, _PENALTY * self._over(coefficients))
-        return _Projected(excess, falling, solution, residual, left)
+        basis, left = self.linear.basis, self.linear.left
+        column = self.linear.weighted(falling)
+        beyond = column - basis @ (basis.T @ column)
+        size = float(np.linalg.norm(beyond))
+        if size <= RANK * float(np.linalg.norm(column)):
+            size = np.inf
+        direction = beyond / size
+        along = float(direction @ left)
+        residual = np.append(left - along * direction, _PENALTY * self._over(coefficients))
+        return _Projected(excess, falling, along / size, residual, direction)
 
     def _directions(self, x: Array, point: _Projected) -> Array:
         """Return the derivatives of the pair means by the nonlinear parameters [N·m]."""
         data = self.data
         delta, times, coefficients = self._split(x)
-        viscous = point.solution[-1] * point.falling
+        viscous = point.gamma * point.falling
         temperature = data.inputs.base[data.pairs] + point.excess @ coefficients
         columns = [-temperature * viscous]
         for number in range(len(times)):
@@ -262,10 +256,10 @@ class _Projection:
         return np.column_stack(columns)
 
     def _jacobian(self, x: Array, point: _Projected) -> Array:
-        directions = self._directions(x, point) / self.data.deviation
-        below = np.zeros((len(point.residual) - 1 - len(directions), directions.shape[1]))
-        whole = np.vstack([directions, below])
-        projected = whole - point.left @ (point.left.T @ whole)
+        directions = self._directions(x, point)
+        whole = np.column_stack([self.linear.weighted(one) for one in directions.T])
+        projected = whole - self.linear.basis @ (self.linear.basis.T @ whole)
+        projected -= np.outer(point.direction, point.direction @ projected)
         over = np.zeros(directions.shape[1])
         if self._over(self._split(x)[2]) > 0:
             first = 1 + self.structure.times
@@ -289,8 +283,8 @@ class _Projection:
             housing_time_constant=times[1] if len(times) > 1 else None,
             coefficients=coefficients,
             delta=delta,
-            gamma=float(point.solution[-1]),
-            linear=point.solution[:-1],
+            gamma=point.gamma,
+            linear=self.linear.beside(point.gamma * point.falling),
             cost=float(point.residual @ point.residual),
             residual=point.residual[: len(data.target)] * data.deviation,
             derivative=np.column_stack([data.linear, point.falling, directions]),

@@ -10,6 +10,10 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.effects.base import Basis
 from frictioncli.effects.pair_series import pair_heads
 from frictioncli.effects.thermal_lag import ThermalInputs
+from frictioncli.linear_algebra import orthonormal_basis
+
+RANK = 1e-10
+"""Singular values of unit columns below this share of the greatest count as zero."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,3 +114,62 @@ class ThermalData:
         if housing_time_constant is not None:
             inputs = inputs.with_hidden_housing(housing_time_constant)
         return inputs.excess(time_constant)[self.pairs]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinearPart:
+    """The columns that do not depend on the hidden temperature, and what they leave of friction.
+
+    Pair means stand above what deviations within pairs tell, all in units of their noise.
+
+    Attributes
+    ----------
+    columns : ndarray, shape (rows, columns)
+        The columns.
+    basis : ndarray, shape (rows, rank)
+        Orthonormal basis of them.
+    target, left : ndarray, shape (rows,)
+        The friction, and what the columns leave of it.
+    deviation : float
+        Standard deviation of a pair mean. [N·m]
+    """
+
+    columns: Array
+    basis: Array
+    target: Array
+    left: Array
+    deviation: float
+
+    @classmethod
+    def of(cls, data: ThermalData) -> "LinearPart":
+        """Return the linear part of the data of a problem."""
+        count = data.linear.shape[1]
+        columns = np.vstack([data.linear / data.deviation, data.within[:, :count]])
+        basis = orthonormal_basis(columns, tolerance=RANK)
+        target = np.concatenate([data.target / data.deviation, data.within[:, -1]])
+        left = target - basis @ (basis.T @ target)
+        return cls(columns=columns, basis=basis, target=target, left=left, deviation=data.deviation)
+
+    def weighted(self, means: Array) -> Array:
+        """Return a torque that is the same in all angle bins of a pair, shape (rows,).
+
+        Parameters
+        ----------
+        means : ndarray, shape (pairs,)
+            The torque. [N·m]
+        """
+        below = np.zeros(len(self.target) - len(means))
+        return np.append(means / self.deviation, below)
+
+    def beside(self, means: Array) -> Array:
+        """Return the coefficients of the columns beside such a torque, shape (columns,).
+
+        Parameters
+        ----------
+        means : ndarray, shape (pairs,)
+            The torque. [N·m]
+        """
+        length = np.linalg.norm(self.columns, axis=0)
+        length = np.where(length > 0, length, 1.0)
+        left = self.target - self.weighted(means)
+        return np.asarray(np.linalg.lstsq(self.columns / length, left, rcond=RANK)[0] / length)
