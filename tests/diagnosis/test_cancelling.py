@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from frictioncli.diagnosis.search import cause_search, rivals
+from frictioncli.diagnosis.search import effect_tests, rivals
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from tests.diagnosis.dense_noise import problem
@@ -25,7 +25,7 @@ def searched(monkeypatch, *, form, measured):
         How much of the effect of the measurement is there [N·m].
     """
     one = effect("x", [(1.0, A), (form, B)])
-    for module in (cause_search, rivals):
+    for module in (effect_tests, rivals):
         monkeypatch.setattr(module, "BY_NAME", {"x": one})
     data = problem(4, lambda rows: 1.5 * A(rows) + measured * B(rows))
     return find_causes(data, (one,), DiagnosisSettings(), 0.1, measurement=(MEASURED,))
