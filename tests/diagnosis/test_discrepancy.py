@@ -11,7 +11,12 @@ from frictioncli.diagnosis.fit.mixed_model import evaluate, weights_of
 from frictioncli.diagnosis.fit.products import Products
 from frictioncli.diagnosis.fit.transformed_columns import Part, TransformedColumns
 from frictioncli.diagnosis.noise.discrepancy import discrepancy_of
-from frictioncli.diagnosis.noise.discrepancy_functions import FINE, SPEED_RIPPLE
+from frictioncli.diagnosis.noise.discrepancy_functions import (
+    FINE,
+    FORM,
+    SPEED_RIPPLE,
+    functions_of,
+)
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from tests.diagnosis.dense_noise import problem
@@ -58,6 +63,20 @@ def test_what_the_base_leaves_of_each_function_has_its_size(joint):
     ends = [one.columns.stop for one in smooth.components]
     assert [one.columns.start for one in smooth.components] == [0, *ends[:-1]]
     assert ends[-1] == smooth.columns.count == smooth.widths.sum()
+
+
+def test_an_error_of_form_that_the_base_contains_is_not_made_of_rounding(joint):
+    values = next(values for _, axes, values in functions_of(joint.table) if axes == FORM)
+    contained = np.append(values[:, 0], np.zeros(len(values)))
+    span, _ = np.linalg.qr(np.column_stack([span_of(joint), contained]))
+    smooth = discrepancy_of(joint, span, 0.01)
+    whole = discrepancy_of(joint, span_of(joint), 0.01)
+    (form,) = (one for one in smooth.components if one.axes == FORM)
+    (before,) = (one for one in whole.components if one.axes == FORM)
+    assert form.columns.stop - form.columns.start < before.columns.stop - before.columns.start
+    assert all(np.all(np.isfinite(columns)) for columns in smooth.shown)
+    square = sum(np.sum(np.mean(part**2, axis=0)) for part in parts(smooth, form))
+    assert square == pytest.approx(weight(form) ** 2)
 
 
 def test_a_torque_meets_what_the_base_leaves_of_the_functions(joint):

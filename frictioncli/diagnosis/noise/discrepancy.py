@@ -69,6 +69,9 @@ _RANK = 1e-3
 _LEAST_LEFT = 1e-4
 """Least share of the mean square of a function that the base leaves."""
 
+_ROUNDED = 1e-6
+"""Share of the norm of an error of form up to which what the base leaves of it is rounding."""
+
 
 @dataclass(frozen=True, slots=True)
 class Component:
@@ -224,7 +227,7 @@ def discrepancy_of(problem: Problem, span: Array, share: float = SHARE) -> Discr
         if axes == FORM:
             orthogonal = -span @ along
             _half(orthogonal, channel)[:] += values
-            combination = _orthonormal_combination(orthogonal)
+            combination = _orthonormal_combination(orthogonal, values)
             values, along = values @ combination, along @ combination
         left = float(np.sum(np.square(values)) - np.sum(np.square(along)))
         unit = loads if channel == "load" else 1.0
@@ -293,10 +296,14 @@ def _of_errors(axes: tuple[str, ...], columns: Array) -> Array:
     return np.asarray(columns * np.sqrt(len(columns) / squares))
 
 
-def _orthonormal_combination(columns: Array) -> Array:
-    """Return the combinations of columns that are orthonormal, shape (columns, rank)."""
+def _orthonormal_combination(columns: Array, whole: Array) -> Array:
+    """Return the combinations of columns that are orthonormal, shape (columns, rank).
+
+    Columns of which the projection left nothing but rounding, relative to the whole ones, have no
+    part in it.
+    """
     size = np.linalg.norm(columns, axis=0)
-    size = np.where(size > 0, size, np.inf)
+    size = np.where(size > _ROUNDED * np.linalg.norm(whole, axis=0), size, np.inf)
     _, strength, right = np.linalg.svd(columns / size, full_matrices=False)
     kept = strength > _RANK * strength[0]
     return np.asarray((right[kept] / strength[kept, np.newaxis]).T / size[:, np.newaxis])
