@@ -140,6 +140,34 @@ def test_a_payload_at_the_start_of_each_run_may_be_friction_that_falls_there(
 
 
 @pytest.mark.parametrize(
+    ("parts", "gradual", "expected"),
+    [
+        ([(0.25, 0.5), (0.75, 1.0)], True, "undetermined"),
+        ([(0.25, 1.0)], True, "undetermined"),
+        ([(0.25, 0.5), (0.75, 1.0)], False, "named"),
+        # for a while in the middle of a run, at the end of one
+        ([(0.15, 0.35)], False, "named"),
+        ([(0.9, 1.0)], False, "named"),
+        # a whole run has no course
+        ([(0.5, 1.0)], True, "named"),
+    ],
+)
+def test_a_load_that_changes_gradually_within_runs_is_no_payload(joint, parts, gradual, expected):
+    """Another joint that moves slowly changes gravity as a payload does, but not at a moment."""
+    payload = of("payload_change", 0.6, shape=history(parts))
+    pairs = len(joint.layout.time)
+    share = (np.arange(pairs) + 0.5) / pairs
+    there = np.any([(begin < share) & (share < end) for begin, end in parts], axis=0)
+    course = 4.0 * (share % 0.5) if gradual else there
+    angle = np.radians(joint.table.angle)
+    gravity = np.column_stack([np.cos(angle), np.sin(angle)]) @ payload.fit.coefficients
+    load = joint.load + 10.0 * gravity * course[joint.layout.row_pair]
+    ((found, reason),) = standing(replace(joint, load=load), payload)
+    assert found == expected
+    assert ("gradually" in reason) == (expected != "named")
+
+
+@pytest.mark.parametrize(
     ("places", "expected"),
     [
         ([5, 15, 20], "undetermined"),

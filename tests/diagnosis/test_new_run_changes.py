@@ -166,7 +166,17 @@ def ripple(table):
     return friction(table, 3.0 * np.sin(3 * np.radians(table["position"])))
 
 
-@pytest.mark.parametrize("other", [nothing, days_differ, slow, approaches, scaled, viscous, ripple])
+def another_joint_moves(table):
+    """Gravity of another joint that is elsewhere on that day, and moves 5 N·m back over it."""
+    there = 1 - hours(table) / hours(table).max()
+    gravity = np.cos(np.radians(table["position"])) * np.where(second(table), 5.0 * there, 0.0)
+    return table.assign(load_torque=table["load_torque"] + gravity)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [nothing, days_differ, slow, approaches, scaled, viscous, ripple, another_joint_moves],
+)
 def test_what_else_a_day_may_have_is_no_change(torques, other):
     causes, _, _ = found(other(torques))
     assert causes == ()

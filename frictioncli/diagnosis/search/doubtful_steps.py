@@ -71,6 +71,14 @@ _FALLS_AT_START = (
 _HALF_OF_FALL = 0.5
 """Greatest share of a change of friction between the moves of a pair that is in the load."""
 
+_IS_GRADUAL = (
+    "within runs the load changes gradually rather than at a moment, as where another joint moves"
+    " slowly"
+)
+
+_CERTAIN = 30.0
+"""Twice the log likelihood by which a load is found to change gradually."""
+
 _AT_START = "it is there only at the start of runs, where friction after a rest would look the same"
 
 
@@ -85,7 +93,9 @@ def doubtful_change(fit: EffectFit, problem: Problem) -> str:
         The joint's rows.
     """
     if fit.effect is PAYLOAD_CHANGE:
-        return _in_first_pairs(_there(fit, problem), problem) or _falls_at_start(fit, problem)
+        there = _there(fit, problem)
+        at_start = _in_first_pairs(there, problem) or _falls_at_start(fit, problem)
+        return at_start or _is_gradual(fit, there, problem)
     if fit.effect is not STEP_CHANGE:
         return ""
     there = _there(fit, problem)
@@ -200,6 +210,41 @@ def _falls_at_start(fit: EffectFit, problem: Problem) -> str:
     friction = problem.layout.means(problem.friction_misfit[:, np.newaxis])[:, 0]
     fall = abs(float(np.mean(friction[~there])) - float(np.mean(friction[there])))
     return _FALLS_AT_START if change < _HALF_OF_FALL * fall else ""
+
+
+def _is_gradual(fit: EffectFit, there: Flags, problem: Problem) -> str:
+    """Return why a payload may be a load that changes slowly; empty if it is not.
+
+    Within the runs in which it comes or goes, a parabola in time leaves less of the load's
+    amplitude than two levels do, which have a moment beside them. Of two levels any parabola leaves
+    a fifth or more.
+    """
+    layout, table = problem.layout, problem.table
+    angle = np.radians(table.angle)
+    gravity = np.column_stack([np.cos(angle), np.sin(angle)]) @ fit.coefficients
+    products = np.column_stack([gravity * problem.load_misfit, np.square(gravity)])
+    along, square = layout.means(products).T
+    amplitude = along / np.maximum(square, 1e-300)
+    pairs, whole, by_levels, by_parabolas = 0, 0.0, 0.0, 0.0
+    for run in np.unique(layout.run):
+        own = layout.run == run
+        if there[own].all() or not there[own].any():
+            continue
+        time = layout.time[own] - np.mean(layout.time[own])
+        pairs += int(own.sum())
+        whole += _left_by(np.zeros((int(own.sum()), 0)), amplitude[own])
+        by_levels += _left_by(there[own][:, np.newaxis], amplitude[own])
+        by_parabolas += _left_by(np.column_stack([time, np.square(time)]), amplitude[own])
+    is_there = whole > by_parabolas * np.exp(_CERTAIN / max(pairs, 1))
+    return _IS_GRADUAL if is_there and by_parabolas < by_levels else ""
+
+
+def _left_by(columns: Array, values: Array) -> float:
+    """Return the sum of squares that a constant and columns leave of some values."""
+    with_constant = np.column_stack([np.ones(len(values)), columns])
+    scaled = with_constant / np.maximum(np.linalg.norm(with_constant, axis=0), 1e-300)
+    coefficients = np.linalg.lstsq(scaled, values, rcond=None)[0]
+    return float(np.sum(np.square(values - scaled @ coefficients)))
 
 
 def _at_start_of_runs(there: Flags, problem: Problem) -> str:

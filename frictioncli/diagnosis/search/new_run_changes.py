@@ -299,7 +299,11 @@ def _rivals(new: Problem, shape: Mapping[str, float], effect: Effect) -> list[Ba
 
 
 def _slow(new: Problem, shape: Mapping[str, float], effect: Effect) -> list[Basis]:
-    """Return torque in the channel of a change that grows slowly, with the run or after it."""
+    """Return torque in the channel of a change that grows slowly, with the run or after it.
+
+    A load that another joint changes by moving slowly varies with the angle as a payload does.
+    Where a payload comes or goes within the run, that joint may have another pose from its start.
+    """
     time = new.table.time
     there = presence(new.all_runs, shape)[new.rows]
     since = time - time.min()
@@ -310,7 +314,16 @@ def _slow(new: Problem, shape: Mapping[str, float], effect: Effect) -> list[Basi
         for run in (since, after)
         for one in (run, *(1 - np.exp(-run / (lag * duration)) for lag in _LAGS))
     ]
-    return [_in_channel(effect.channel, one) for one in slow]
+    found = [_in_channel(effect.channel, one) for one in slow]
+    if effect.channel == "friction":
+        return found
+    (throughout,) = spans_with(new.all_runs, np.unique(measured_share(new.all_runs)[new.rows]))
+    own = new.basis(effect, history([throughout]))
+    lasting = 0 if there.all() else own.load.shape[1]
+    return found + [
+        Basis(*(np.hstack([part[:, :lasting], one[:, np.newaxis] * part]) for part in own))
+        for one in slow
+    ]
 
 
 def _in_channel(channel: Channel, torque: Array) -> Basis:
