@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,12 +11,15 @@ from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.data.load_levels import two_level_history
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
-from frictioncli.diagnosis.search.new_run import holds_on_new_run, new_run_test
+from frictioncli.diagnosis.search import cause_selection
+from frictioncli.diagnosis.search.cause_selection import judged_on_new_run
+from frictioncli.diagnosis.search.new_run import NewRunTest, holds_on_new_run, new_run_test
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.history import history, presence, stretches
 from frictioncli.effects.history_text import history_text
 from frictioncli.model.noise import Noise
 from frictioncli.simulator.settings import SynthesisSettings
+from tests.diagnosis.test_standing import cause
 from tests.diagnosis.wave_effects import A, B
 from tests.diagnosis.wave_effects import effect as waves
 from tests.simulation.changed_table import hours, with_friction_step, with_payload
@@ -232,3 +236,21 @@ def test_a_cause_whose_torque_the_runs_seen_do_not_determine_is_not_absent(torqu
     assert held[0].holds is None
     assert held[1].holds is True
     assert held[1].amplitude == pytest.approx(1.0, abs=3 * held[1].error)
+
+
+@pytest.mark.parametrize(
+    ("name", "standing"),
+    [("load_linear", "named"), ("rest_recovery", "visible"), ("sensor_lag", "visible")],
+)
+def test_what_is_there_on_every_day_is_refuted_by_a_day_without(monkeypatch, name, standing):
+    """The same sensor reads every day; a property of the joint may have gone."""
+    absent = NewRunTest(holds=False, amplitude=0.1, error=0.01, shape={})
+    monkeypatch.setattr(cause_selection, "new_run_test", lambda *_: absent)
+    effect = BY_NAME[name]
+    shape = {one.name: one.at(0.5) for one in effect.shape}
+    width = len(effect.coefficients)
+    found = cause(effect, (1.0,) * width, (0.1,) * width, shape=shape)
+    found = replace(found, standing="named", test=replace(found.test, p_value=1e-9))
+    step = SimpleNamespace(problem=None, weighted_fit=lambda: None, noise=lambda: None)
+    (judged,) = judged_on_new_run([found], step, None)
+    assert (judged.holds_on_new_run, judged.standing) == (False, standing)

@@ -19,6 +19,7 @@ from frictioncli.diagnosis.search.new_run import NewRunTest, new_run_test
 from frictioncli.diagnosis.search.standing import without_cancelling
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Effect
+from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 BEYOND_DOUBT = 1e-6
@@ -211,7 +212,9 @@ def _with_test(cause: Cause, test: NewRunTest) -> Cause:
     if test.holds is not False or _is_change(cause):
         return judged
     nothing = abs(test.amplitude) <= max(2 * test.error, _NOTHING)
-    if nothing and cause.test.p_value < BEYOND_DOUBT and not cause.fit.effect.recurs:
+    # the sensor is the same one on every run
+    comes_back = cause.fit.effect.recurs or cause.fit.effect is SENSOR_LAG
+    if nothing and cause.test.p_value < BEYOND_DOUBT and not comes_back:
         return judged
     reason = f"on the held-out run it is {test.amplitude:.2g} times as large"
     return replace(judged, standing="visible", reason=reason)
