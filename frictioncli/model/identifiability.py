@@ -200,7 +200,7 @@ def why_no_load_term(observed: Observations, estimate: Estimate) -> str:
     )
 
 
-def load_varies(observed: Observations, estimate: Estimate) -> bool:
+def load_varies(observed: Observations, estimate: Estimate, noise: float = np.inf) -> bool:
     """Return whether the square of the load varies by more than noise makes of it.
 
     Parameters
@@ -209,10 +209,12 @@ def load_varies(observed: Observations, estimate: Estimate) -> bool:
         Friction of one joint.
     estimate : Estimate
         A fit to it.
+    noise : float, optional
+        Greatest noise of a bin, where it is known apart from that of the fit. [N·m]
     """
     squares = observed.squared_load[observed.row_pair] + observed.squared_load_within
     # what noise of the size of a bin's makes of the square of a load
-    of_noise = _NOISY * float(np.mean(4.0 * squares)) * estimate.noise.point**2
+    of_noise = _NOISY * float(np.mean(4.0 * squares)) * min(estimate.noise.point, noise) ** 2
     return bool(np.var(squares) > of_noise)
 
 

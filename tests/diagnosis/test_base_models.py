@@ -47,13 +47,14 @@ def test_growth_hides_beta_from_the_fit_and_not_from_the_diagnosis():
     np.testing.assert_array_equal(derivative, np.sqrt(problem.table.speed))
 
 
-def test_a_ripple_hides_alpha_from_the_fit_and_not_from_the_diagnosis():
+@pytest.mark.parametrize("size", [1.0, 6.0])
+def test_a_ripple_hides_alpha_from_the_fit_and_not_from_the_diagnosis(size):
     """Friction by the square of the load would be another effect of the load, or a ripple."""
     rows = pd.concat(
         [torques(seed, load=20.0).assign(run=f"day{seed}", load=np.nan) for seed in (1, 2)],
         ignore_index=True,
     ).assign(housing_temperature=np.nan)
-    rows["friction_torque"] += np.sin(np.radians(10.0 * rows["position"]))
+    rows["friction_torque"] += size * np.sin(np.radians(10.0 * rows["position"]))
     problem = build_problems(rows, "motor")[0]
     assert problem.parameters.alpha == 0
     derivative = problem.friction_base

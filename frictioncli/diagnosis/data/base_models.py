@@ -78,6 +78,17 @@ def _base(rows: pd.DataFrame, temperature: str) -> Base:
     free = set(estimate.names)
     if "gamma" in free:
         free.add("beta")
-    if load_varies(observed, estimate):
+    if load_varies(observed, estimate, _noise_of_bins(rows)):
         free.add("alpha")
     return Base(estimate.parameters, tuple(name for name in PARAMETERS if name in free))
+
+
+def _noise_of_bins(rows: pd.DataFrame) -> float:
+    """Return the RMS of friction beside the mean of its pair and what all pairs have at an angle.
+
+    A ripple of friction is no noise of the load. [N·m]
+    """
+    friction = rows["friction_torque"]
+    within = friction - friction.groupby([rows[key] for key in PAIR_KEY]).transform("mean")
+    left = within - within.groupby(rows["position"]).transform("mean")
+    return float(np.sqrt(np.mean(np.square(left))))
