@@ -18,7 +18,7 @@ the run, only if it is more than days differ by. A step that explains hardly mor
 changes slowly may be a drift.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -26,7 +26,6 @@ import numpy as np
 from scipy.special import expit
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import base_rows, main_channel
 from frictioncli.diagnosis.fit.extension import Extension
 from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, physical_bounds
@@ -36,7 +35,8 @@ from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.largest_structure import BETWEEN_DAYS
 from frictioncli.diagnosis.search.new_run import parts_of
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
-from frictioncli.effects.base import Basis, Channel, Effect
+from frictioncli.diagnosis.search.new_run_torque import rivals_of_change, slow_torque
+from frictioncli.effects.base import Basis, Effect
 from frictioncli.effects.drift import EFFECT as DRIFT
 from frictioncli.effects.history import (
     Shape,
@@ -65,9 +65,6 @@ _CLEAR_SHARE = 0.02
 
 _LEAST_PRESENT = 0.1
 """Least share of the pairs of the run that have a change, and that lack one that begins later."""
-
-_LAGS = (1 / 8, 1 / 3, 1.0)
-"""Time constants of slow torque that is tried instead, as shares of the run."""
 
 _FORM = 0.05
 """Standard deviation of what the form of a change misses, relative to its size."""
@@ -180,8 +177,8 @@ def _change(
     columns = new.basis(effect, best)
     own = residual.with_own_noise(columns)
     coefficients, covariance, statistic = own.fitted(columns)
-    is_rivalled, _ = _nearly_explained(own, columns, _rivals(new, best, effect))
-    is_slow, slow = _nearly_explained(own, columns, _slow(new, best, effect))
+    is_rivalled, _ = _nearly_explained(own, columns, rivals_of_change(new, best, effect))
+    is_slow, slow = _nearly_explained(own, columns, slow_torque(new, best, effect))
     gradual = [
         one.name for one in tried if one.name == DRIFT.name and effect.channel == one.channel
     ]
@@ -271,61 +268,3 @@ def _nearly_explained(
         for other, least in found
     )
     return near, max(other for other, _ in found)
-
-
-def _rivals(new: Problem, shape: Mapping[str, float], effect: Effect) -> list[Basis]:
-    """Return other torque with the history of a change that might be left.
-
-    Days differ in everything that friction depends on. Within a run a step of it is a step,
-    whatever it depends on.
-    """
-    table = new.table
-    there = presence(new.all_runs, shape)[new.rows]
-    found = [
-        Basis((there * table.friction)[:, np.newaxis], (there * table.load)[:, np.newaxis]),
-        _in_channel("load", there),
-    ]
-    if effect.channel != "friction" or there.all():
-        found += [
-            _in_channel("friction", there * one)
-            for one in (
-                table.friction,
-                np.sqrt(table.speed),
-                table.temperature_slope,
-                np.square(table.load),
-            )
-        ]
-    return found
-
-
-def _slow(new: Problem, shape: Mapping[str, float], effect: Effect) -> list[Basis]:
-    """Return torque in the channel of a change that grows slowly, with the run or after it.
-
-    A load that another joint changes by moving slowly varies with the angle as a payload does.
-    Where a payload comes or goes within the run, that joint may have another pose from its start.
-    """
-    time = new.table.time
-    there = presence(new.all_runs, shape)[new.rows]
-    since = time - time.min()
-    after = np.maximum(time - float(np.min(time[there > 0])), 0.0)
-    duration = max(float(np.ptp(since)), 1e-9)
-    slow = [
-        one
-        for run in (since, after)
-        for one in (run, *(1 - np.exp(-run / (lag * duration)) for lag in _LAGS))
-    ]
-    found = [_in_channel(effect.channel, one) for one in slow]
-    if effect.channel == "friction":
-        return found
-    (throughout,) = spans_with(new.all_runs, np.unique(measured_share(new.all_runs)[new.rows]))
-    own = new.basis(effect, history([throughout]))
-    lasting = 0 if there.all() else own.load.shape[1]
-    return found + [
-        Basis(*(np.hstack([part[:, :lasting], one[:, np.newaxis] * part]) for part in own))
-        for one in slow
-    ]
-
-
-def _in_channel(channel: Channel, torque: Array) -> Basis:
-    values, nothing = torque[:, np.newaxis], np.zeros((len(torque), 1))
-    return Basis(values, nothing) if channel == "friction" else Basis(nothing, values)
