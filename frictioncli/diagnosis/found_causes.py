@@ -5,7 +5,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT, refuted_by_new_run
+from frictioncli.diagnosis.search.cause_selection import (
+    BEYOND_DOUBT,
+    refuted_by_new_run,
+    refuted_lag,
+)
 from frictioncli.diagnosis.search.judging import JudgedCauses, Judging
 from frictioncli.diagnosis.search.measurement import clear_effects, doubtful_filter
 from frictioncli.diagnosis.search.new_run_rivals import refuted_by_return, without_refuted_rivals
@@ -106,6 +110,9 @@ def _not_refuted(
         if judging.new is not None:
             worse = refuted_by_new_run(judged.named, found.step, judging.new)
             worse = worse or refuted_by_return(judged.named, found, judging.new)
+            if not worse and lag is not None and new is not None:
+                rows = judging.problem, judging.new
+                worse = refuted_lag(judged.named, found.step, rows, (base, new))
         if not worse:
             break
         refuted += worse

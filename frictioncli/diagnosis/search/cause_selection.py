@@ -10,8 +10,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.extension import extend, refit, rms_misfit
+from frictioncli.diagnosis.fit.extension import Extension, extend, refit, rms_misfit
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.doubtful_steps import doubtful_with_new_run
@@ -19,6 +20,7 @@ from frictioncli.diagnosis.search.new_run import NewRunTest, new_run_test
 from frictioncli.diagnosis.search.standing import without_cancelling
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Effect
+from frictioncli.effects.rest_recovery import EFFECT as REST_RECOVERY
 from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
@@ -29,8 +31,13 @@ any cause whose coefficient may be zero in the extended model."""
 _NOTHING = 0.2
 """Greatest amplitude on the new run that counts as nothing, beside its interval."""
 
+_AT_BOUND = 0.99
+"""Share of the range of a time from which on it lies on the bound of what is tried."""
+
 WORSE = 1.05
 """RMS misfit of a new run with a cause over that without it from which on the run refutes it."""
+
+_MADE_WORSE = "with it, the misfit on the held-out run is {times:.2g} times as large"
 
 _ROUNDS = 2
 """Times that the histories of all changes are fitted on the new run, each beside the others."""
@@ -124,11 +131,47 @@ def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tup
         worst = min(without, key=lambda name: without[name], default=None)
         if worst is None or with_all <= WORSE * without[worst]:
             return tuple(refuted)
-        times = f"{with_all / without[worst]:.2g} times as large"
-        reason = f"with it, the misfit on the held-out run is {times}"
+        reason = _MADE_WORSE.format(times=with_all / without[worst])
         (gone,) = (one for one in among if one.fit.effect.name == worst)
         refuted.append(replace(gone, standing="visible", reason=reason))
         among.remove(gone)
+
+
+def refuted_lag(
+    causes: Sequence[Cause],
+    step: Step,
+    rows: tuple[Problem, Problem],
+    measured: tuple[Problem, Problem],
+) -> tuple[Cause, ...]:
+    """Return the lag of the gear, no longer named, if it makes the prediction clearly worse.
+
+    What the gear was warmed by before a run is not logged. Where that decides, the measured
+    temperature predicts the run better.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes that are named, judged on the new run.
+    step : Step
+        The last step of the search.
+    rows : (Problem, Problem)
+        The rows seen, and those of a new run, about the temperature of the gear.
+    measured : (Problem, Problem)
+        The same about the measured temperature.
+    """
+    weighted_fit = step.predicting_fit()
+    among = [one for one in causes if one.standing == "named"]
+    others = [one.fit for one in among if one.fit.effect.name != THERMAL_LAG.name]
+    with_lag = missed_of_new_run([one.fit for one in among], *rows, weighted_fit)
+    without = missed_of_new_run(others, *measured, weighted_fit)
+    if with_lag <= WORSE * without:
+        return ()
+    reason = _MADE_WORSE.format(times=with_lag / without)
+    return tuple(
+        replace(one, standing="visible", reason=reason)
+        for one in among
+        if one.fit.effect.name == THERMAL_LAG.name
+    )
 
 
 def predicts_new_run(effect: Effect) -> bool:
@@ -174,7 +217,8 @@ def uncertain_causes(
 
     What smooth errors of the model could add along it counts there, and what is not fitted. Of what
     is there beyond doubt only the part that the base could imitate may be zero; of an effect of the
-    measurement that part counts as well.
+    measurement that part counts as well. Zero may be, too, the excess of friction after rests that
+    recovers more slowly than any that is tried.
 
     Parameters
     ----------
@@ -189,9 +233,25 @@ def uncertain_causes(
     return frozenset(
         cause.fit.effect.name
         for number, cause in enumerate(causes)
-        if extension.may_be_zero(number)
-        and (cause.test.p_value >= BEYOND_DOUBT or cause.fit.effect.measurement)
+        if _recovers_without_end(extension, number)
+        or (
+            extension.may_be_zero(number)
+            and (cause.test.p_value >= BEYOND_DOUBT or cause.fit.effect.measurement)
+        )
     )
+
+
+def _recovers_without_end(extension: Extension, number: int) -> bool:
+    """Return whether an effect is friction that recovers in no rest, with an excess of any size.
+
+    It then grows steadily, as friction that rises over each day.
+    """
+    fit = extension.effects[number]
+    if fit.effect is not REST_RECOVERY:
+        return False
+    (rest,) = (one for one in fit.effect.shape if one.name == "rest_time")
+    error = extension.errors[extension.place(number)][0]
+    return rest.share(fit.shape["rest_time"]) >= _AT_BOUND and fit.coefficients[0] <= Z95 * error
 
 
 def _is_change(cause: Cause) -> bool:
