@@ -168,6 +168,7 @@ def _diagnosed(
             # structure without a name may be on the held-out run in another way
             usual=rms_misfit(problem, modelled) if named.structure is None else found.floor,
             margin=margin,
+            structure=named.structure,
         )
         for cause in appeared:
             modelled = extension = with_effect(modelled, cause.fit, len(causes))

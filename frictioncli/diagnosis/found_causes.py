@@ -110,13 +110,16 @@ def _not_refuted(
         if judging.new is not None:
             worse = refuted_by_new_run(judged.named, found.step, judging.new)
             worse = worse or refuted_by_return(judged.named, found, judging.new)
-            if not worse and lag is not None and new is not None:
-                rows = judging.problem, judging.new
-                worse = refuted_lag(judged.named, found.step, rows, (base, new))
         if not worse:
             break
         refuted += worse
     if judging.new is not None:
         kept = without_refuted_rivals(judged.causes, found, judging.new)
         judged = replace(judged, causes=kept)
+    if judging.new is not None and new is not None and lag is not None:
+        # nothing else may take its place: the runs seen show it
+        rows = judging.problem, judging.new
+        reason = refuted_lag(judged.named, found.step, rows, (base, new))
+        if reason:
+            judged = judged.without_names({LAG}, "visible", reason)
     return FoundCauses(search=found, judged=judged, judging=judging, lag=lag, refuted=refuted)

@@ -9,7 +9,11 @@ import pytest
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search import cause_selection
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.cause_selection import refuted_by_new_run
+from frictioncli.diagnosis.search.cause_selection import (
+    refuted_by_new_run,
+    refuted_lag,
+    uncertain_causes,
+)
 from frictioncli.diagnosis.search.judging import JudgedCauses
 from frictioncli.diagnosis.search.named_causes import without_imitations
 from frictioncli.diagnosis.thermal.refine import restricted
@@ -85,3 +89,49 @@ def test_the_new_run_does_not_refute_a_lag_of_which_a_network_has_some_parts(mon
     step = SimpleNamespace(problem=None, predicting_fit=lambda: None)
     (refuted,) = refuted_by_new_run([lag, cause("drift", "named")], step, None)
     assert refuted.effects == ("drift",)
+
+
+@pytest.mark.parametrize(
+    ("others", "times"), [((), "2.5 times"), (("drift",), "2 times"), (("stribeck",), "")]
+)
+def test_a_lag_that_spoils_the_new_run_is_refuted_by_the_measured_temperature(
+    monkeypatch, others, times
+):
+    """What warmed the gear before the run is not logged; the misfits are 5 with the lag."""
+    without = {(): 2.0, ("drift",): 2.5, ("stribeck",): 4.9}
+
+    def missed(fits, problem, new, weighted_fit):
+        names = tuple(one.effect.name for one in fits)
+        assert (problem, new) == (("gear",) * 2 if "thermal_lag" in names else ("measured",) * 2)
+        return 5.0 if "thermal_lag" in names else without[names]
+
+    monkeypatch.setattr(cause_selection, "missed_of_new_run", missed)
+    step = SimpleNamespace(predicting_fit=lambda: None)
+    causes = [cause("thermal_lag", "named"), *(cause(one, "named") for one in others)]
+    reason = refuted_lag(causes, step, ("gear", "gear"), ("measured", "measured"))
+    assert times in reason
+    assert bool(reason) == bool(times)
+    assert refuted_lag(causes[1:], step, ("gear", "gear"), ("measured", "measured")) == ""
+
+
+@pytest.mark.parametrize(
+    ("rest_time", "error", "is_uncertain"),
+    [(86_300.0, 20.0, True), (86_300.0, 0.5, False), (3_600.0, 20.0, False)],
+)
+def test_friction_that_recovers_in_no_rest_needs_an_excess_that_is_known(
+    monkeypatch, rest_time, error, is_uncertain
+):
+    """Else it is friction that rises steadily; a rest of hours may leave the excess uncertain."""
+    recovering = cause("rest_recovery", "named")
+    shape = {"pairs": 27.0, "rest_time": rest_time, "at_start": 0.0}
+    values = np.array([3.0, 0.1])
+    fit = replace(recovering.fit, effect=BY_NAME["rest_recovery"], shape=shape, coefficients=values)
+    extension = SimpleNamespace(
+        effects=(fit,),
+        errors=np.array([9.0, error, 1.0]),
+        place=lambda _: slice(1, 3),
+        may_be_zero=lambda _: False,
+    )
+    monkeypatch.setattr(cause_selection, "extend", lambda *_: extension)
+    found = uncertain_causes([replace(recovering, fit=fit)], None, None)
+    assert found == ({"rest_recovery"} if is_uncertain else set())

@@ -7,6 +7,7 @@ from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.fit.extension import extend, misfits, rms_misfit
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
+from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.effects import BY_NAME, EFFECTS
@@ -27,7 +28,7 @@ def torques():
     return table[(table["pair"] // 4 % 2 == 0) & (table["position"] // 5 % 2 == 0)]
 
 
-def found(table, margin=0.26):
+def found(table, margin=0.26, structure=None):
     """Return the changes on the second day, the extended model, and that day."""
     problem, new = build_problems(table, "motor", "day2")
     extra = problem.temperature_variance
@@ -36,7 +37,9 @@ def found(table, margin=0.26):
     extension = extend(problem, weighted_fit, [])
     residual = NewRunMisfit.of(problem, new, extension, weighted_fit, (NOISE, NOISE))
     usual = rms_misfit(problem, extension)
-    causes = changes_on_new_run(residual, EFFECTS, floor=FLOOR, usual=usual, margin=margin)
+    causes = changes_on_new_run(
+        residual, EFFECTS, floor=FLOOR, usual=usual, margin=margin, structure=structure
+    )
     return causes, extension, new
 
 
@@ -88,6 +91,28 @@ def test_a_step_of_friction(torques, after):
     assert len(explained.errors) == len(extension.errors) + 1
     left = np.sqrt(np.mean(new.squared(*misfits(new, explained))))
     assert left < 1.25 * FLOOR
+
+
+@pytest.mark.parametrize(
+    ("axes", "channel", "share", "is_named"),
+    [
+        (("time",), "load", 0.5, False),
+        (("position", "time"), "load", 0.5, False),
+        (("time",), "load", 0.2, True),
+        (("time",), "friction", 0.5, True),
+        (("position",), "load", 0.5, True),
+    ],
+)
+def test_a_load_that_changes_with_time_every_day_is_no_payload(
+    torques, axes, channel, share, is_named
+):
+    """As where another joint, which no log has, moves on slowly between the days as well."""
+    table = with_payload(torques, second(torques), 5.0, 2.0)
+    size = share * float(np.std(table["load_torque"] - torques["load_torque"]))
+    along = Structure(
+        axes=axes, channel=channel, p_value=0.0, statistic=99.0, size=size, interval=(size, size)
+    )
+    assert len(found(table, structure=along)[0]) == is_named
 
 
 def test_friction_that_steps_in_proportion_is_a_step(torques):

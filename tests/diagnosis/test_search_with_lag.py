@@ -93,6 +93,18 @@ def test_a_gear_that_leads_the_motor_may_be_a_sensor_that_lags():
     assert diagnosis.gain.after < 1.1 * (0.25**2 + 0.125**2 + 0.1**2 + 0.25**2) ** 0.5
 
 
+@pytest.mark.parametrize("unlogged", [0.0, 4000.0])
+def test_a_lag_is_given_up_where_what_warmed_the_gear_of_the_held_out_run_is_not_logged(unlogged):
+    """It would predict that run from a gear as cold as the motor; nothing else takes its place."""
+    network = Network(motor_heat=0.3)
+    joint, _ = torques(network, highest=45.0, unlogged=unlogged)
+    diagnosis = diagnose_joint(joint, "motor", "N·m", DiagnosisSettings())
+    assert [one.effects for one in diagnosis.causes] == ([] if unlogged else [("thermal_lag",)])
+    if unlogged:
+        (lag,) = (one for one in diagnosis.visible if one.fit.effect.name == "thermal_lag")
+        assert "misfit on the held-out run" in lag.reason
+
+
 @pytest.mark.long
 def test_a_drift_does_not_hide_a_lag_of_many_degrees(sample_run, tmp_path):
     """Beside the drift alone the lag would ask for more than is physically possible.

@@ -61,15 +61,19 @@ class _Joint:
         self.time += seconds
 
 
-def torques(network, *, seed=0, runs=2, noise=0.25, highest=58.0):
+def torques(network, *, seed=0, runs=2, noise=0.25, highest=58.0, unlogged=0.0):
     """Return runs of heating at 100 deg/s and natural cooling, and the gear's temperatures.
 
-    Four pairs are measured about every degree. Noise is white per bin and per pair, with a slow
+    Four pairs are measured about every degree. The last run follows some seconds of motion that no
+    log has. Noise is white per bin and per pair, with a slow
     drift of 0.1 N·m. The temperature of the gear is that in each pair.
     """
     generator, rows, gear = np.random.default_rng(seed), [], []
     for run in range(runs):
         joint = _Joint(network, 21.0 + 2.0 * run)
+        if run == runs - 1 and unlogged:
+            joint.move(unlogged, 100.0)
+            joint.time = 0.0
         pair, heating, drift = 0, True, 0.0
         measured = -np.inf
         while True:

@@ -142,11 +142,11 @@ def refuted_lag(
     step: Step,
     rows: tuple[Problem, Problem],
     measured: tuple[Problem, Problem],
-) -> tuple[Cause, ...]:
-    """Return the lag of the gear, no longer named, if it makes the prediction clearly worse.
+) -> str:
+    """Return why a lag of the gear makes the prediction of a new run worse; empty if it does not.
 
-    What the gear was warmed by before a run is not logged. Where that decides, the measured
-    temperature predicts the run better.
+    What warmed the gear before a run is not logged. Where that decides, the measured temperature
+    predicts the run better.
 
     Parameters
     ----------
@@ -162,16 +162,11 @@ def refuted_lag(
     weighted_fit = step.predicting_fit()
     among = [one for one in causes if one.standing == "named"]
     others = [one.fit for one in among if one.fit.effect.name != THERMAL_LAG.name]
+    if len(others) == len(among):
+        return ""
     with_lag = missed_of_new_run([one.fit for one in among], *rows, weighted_fit)
     without = missed_of_new_run(others, *measured, weighted_fit)
-    if with_lag <= WORSE * without:
-        return ()
-    reason = _MADE_WORSE.format(times=with_lag / without)
-    return tuple(
-        replace(one, standing="visible", reason=reason)
-        for one in among
-        if one.fit.effect.name == THERMAL_LAG.name
-    )
+    return _MADE_WORSE.format(times=with_lag / without) if with_lag > WORSE * without else ""
 
 
 def predicts_new_run(effect: Effect) -> bool:

@@ -32,6 +32,7 @@ from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, phys
 from frictioncli.diagnosis.noise.significance import NullDistribution, log_bayes_factor
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
+from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.largest_structure import BETWEEN_DAYS
 from frictioncli.diagnosis.search.new_run import parts_of
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
@@ -66,6 +67,9 @@ _CLEAR_SHARE = 0.02
 _LEAST_PRESENT = 0.1
 """Least share of the pairs of the run that have a change, and that lack one that begins later."""
 
+_AS_LARGE = 1 / 3
+"""Size of structure along time on the runs seen, relative to a change, that may be the same."""
+
 _FORM = 0.05
 """Standard deviation of what the form of a change misses, relative to its size."""
 
@@ -73,12 +77,18 @@ _Z95 = 1.96
 
 
 def changes_on_new_run(
-    residual: NewRunMisfit, tried: Sequence[Effect], *, floor: float, usual: float, margin: float
+    residual: NewRunMisfit,
+    tried: Sequence[Effect],
+    *,
+    floor: float,
+    usual: float,
+    margin: float,
+    structure: Structure | None = None,
 ) -> tuple[Cause, ...]:
     """Return the change that explains what the extended model leaves of a new run, if one does.
 
     A payload need not explain what the model leaves of the runs seen as well, as ringing behind
-    ramps.
+    ramps. What changes with time on the runs seen, too, need not stop between two runs.
 
     Parameters
     ----------
@@ -92,6 +102,8 @@ def changes_on_new_run(
         RMS of what the model leaves of the runs seen. [N·m]
     margin : float
         Smallest size worth a name. [N·m]
+    structure : Structure, optional
+        Structure without a name that the runs seen have.
     """
     left = residual.mean_square(residual.misfit)
     if left <= (ADEQUATE * floor) ** 2:
@@ -103,7 +115,7 @@ def changes_on_new_run(
         # friction of another day differs from what the model leaves of those seen
         beyond = max(floor, usual) if effect.channel == "load" else floor
         cause = _change(residual, effect, tried, margin)
-        if cause is None:
+        if cause is None or (structure is not None and _goes_on(structure, cause)):
             continue
         torque = residual.new.basis(effect, cause.fit.shape)
         without = tuple(
@@ -113,6 +125,12 @@ def changes_on_new_run(
         if left - residual.mean_square((without[0], without[1])) >= _EXPLAINED * (left - beyond**2):
             found.append(cause)
     return tuple(sorted(found, key=lambda one: -one.test.statistic)[:1])
+
+
+def _goes_on(structure: Structure, cause: Cause) -> bool:
+    """Return whether structure along time is as large as a change, or nearly, in its channel."""
+    same = structure.channel == cause.fit.effect.channel and "time" in structure.axes
+    return same and structure.size > _AS_LARGE * cause.size
 
 
 def with_effect(extension: Extension, fit: EffectFit, place: int) -> Extension:
