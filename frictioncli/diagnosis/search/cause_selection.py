@@ -37,6 +37,10 @@ _AT_BOUND = 0.99
 WORSE = 1.05
 """RMS misfit of a new run with a cause over that without it from which on the run refutes it."""
 
+_WORSE_WITH_LAG = 1.25
+"""The same with a lag of the gear, whose network is never exact: a gear that something else has
+warmed is far off."""
+
 _MADE_WORSE = "with it, the misfit on the held-out run is {times:.2g} times as large"
 
 _ROUNDS = 2
@@ -166,7 +170,8 @@ def refuted_lag(
         return ""
     with_lag = missed_of_new_run([one.fit for one in among], *rows, weighted_fit)
     without = missed_of_new_run(others, *measured, weighted_fit)
-    return _MADE_WORSE.format(times=with_lag / without) if with_lag > WORSE * without else ""
+    times = with_lag / without
+    return _MADE_WORSE.format(times=times) if times > _WORSE_WITH_LAG else ""
 
 
 def predicts_new_run(effect: Effect) -> bool:
