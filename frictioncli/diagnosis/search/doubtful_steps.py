@@ -9,6 +9,7 @@ from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.motion_history import pauses_of
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.data.temperature_direction import temperature_direction
+from frictioncli.diagnosis.fit.columns import RANK
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.confounded import (
@@ -22,6 +23,7 @@ from frictioncli.effects.payload_change import EFFECT as PAYLOAD_CHANGE
 from frictioncli.effects.rest_recovery import EFFECT as REST_RECOVERY
 from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
+from frictioncli.linear_algebra import least_squares_residual
 from frictioncli.wording import in_words
 
 _START_OF_RUN = 0.15
@@ -232,19 +234,17 @@ def _is_gradual(fit: EffectFit, there: Flags, problem: Problem) -> str:
             continue
         time = layout.time[own] - np.mean(layout.time[own])
         pairs += int(own.sum())
-        whole += _left_by(np.zeros((int(own.sum()), 0)), amplitude[own])
-        by_levels += _left_by(there[own][:, np.newaxis], amplitude[own])
-        by_parabolas += _left_by(np.column_stack([time, np.square(time)]), amplitude[own])
+        whole += _left_of(amplitude[own])
+        by_levels += _left_of(amplitude[own], there[own])
+        by_parabolas += _left_of(amplitude[own], time, np.square(time))
     is_there = whole > by_parabolas * np.exp(_CERTAIN / max(pairs, 1))
     return _IS_GRADUAL if is_there and by_parabolas < by_levels else ""
 
 
-def _left_by(columns: Array, values: Array) -> float:
+def _left_of(values: Array, *columns: Array | Flags) -> float:
     """Return the sum of squares that a constant and columns leave of some values."""
-    with_constant = np.column_stack([np.ones(len(values)), columns])
-    scaled = with_constant / np.maximum(np.linalg.norm(with_constant, axis=0), 1e-300)
-    coefficients = np.linalg.lstsq(scaled, values, rcond=None)[0]
-    return float(np.sum(np.square(values - scaled @ coefficients)))
+    design: Array = np.column_stack([np.ones(len(values)), *columns])
+    return float(np.sum(np.square(least_squares_residual(design, values, tolerance=RANK))))
 
 
 def _at_start_of_runs(there: Flags, problem: Problem) -> str:
