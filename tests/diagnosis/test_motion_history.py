@@ -11,6 +11,7 @@ from frictioncli.diagnosis.data.motion_history import (
     distance_of_pairs,
     pauses_of,
     series,
+    share_moved,
     travel_of,
 )
 from frictioncli.diagnosis.data.pair_layout import PairLayout
@@ -33,7 +34,8 @@ def pairs(time, run=0):
 def rests(time, warm=40.0, run=0):
     layout = pairs(time, run)
     pause = pauses_of(layout, np.zeros(len(time)))
-    rest, order = series(layout, pause, np.broadcast_to(warm, len(time)).astype(float))
+    moved = share_moved(layout, pause, np.broadcast_to(warm, len(time)).astype(float))
+    rest, order = series(layout, pause, moved)
     return rest.tolist(), order.tolist()
 
 
@@ -48,7 +50,7 @@ def test_the_time_that_slow_pairs_take_is_no_rest():
     layout = pairs([0, 200, 460])
     pause = pauses_of(layout, np.full(3, 2400.0))
     assert pause.tolist() == [80, 140]
-    assert series(layout, pause, np.full(3, 40.0))[0].tolist() == [INF, INF, 140]
+    assert series(layout, pause, np.zeros(2))[0].tolist() == [INF, INF, 140]
 
 
 @pytest.mark.parametrize(
@@ -80,14 +82,16 @@ def test_rests_are_alike_within_a_series_and_places_count_up(steps, runs):
     warm = 40 + np.cumsum([change for _, change in steps])
     run = np.sort(np.arange(len(steps)) % runs)
     layout = pairs(time, run)
-    rest, order = series(layout, pauses_of(layout, np.zeros(len(time))), warm)
+    pause = pauses_of(layout, np.zeros(len(time)))
+    rest, order = series(layout, pause, share_moved(layout, pause, warm))
     for i in range(1, len(time)):
         if order[i] > 0:
             assert (rest[i], order[i]) == (rest[i - 1], order[i - 1] + 1)
     heads = order == 0
     assert heads[0]
     known = np.isfinite(rest)
-    assert ((rest[known] == 0) | (rest[known] > 120)).all()
+    length = np.append(INF, pause)[heads][np.cumsum(heads) - 1]
+    assert ((rest[known] >= 0) & (rest[known] <= length[known])).all()
     for number in np.unique(run):
         assert rest[run == number][0] == INF
 
@@ -111,7 +115,8 @@ ROWS = pd.DataFrame(
 
 def travelled(layout, temperature):
     distance = distance_of_pairs(ROWS)
-    return travel_of(layout, distance, pauses_of(layout, distance), temperature)
+    pause = pauses_of(layout, distance)
+    return travel_of(layout, distance, pause, share_moved(layout, pause, temperature))
 
 
 def test_a_pair_travels_its_angles_twice():
@@ -153,7 +158,8 @@ def worked(share, *, pause=400.0, ambient=22.0, hottest=36.0):
     count = len(above)
     layout = pairs(pause * np.arange(count))
     between = pauses_of(layout, np.zeros(count))
-    found = travel_of(layout, np.zeros(count), between, ambient + np.array(above))
+    moved = share_moved(layout, between, ambient + np.array(above))
+    found = travel_of(layout, np.zeros(count), between, moved)
     return found / 72_000.0, np.append(0.0, np.cumsum(share)) * pause / 3600.0
 
 
@@ -188,4 +194,22 @@ def test_where_it_is_warm_does_not_matter(ambient):
 def test_a_motor_that_cools_all_day_has_not_moved():
     above = 30.0 * np.exp(-COOLING * 400.0 * np.arange(21))
     layout = pairs(400.0 * np.arange(21))
-    assert not travel_of(layout, np.zeros(21), pauses_of(layout, np.zeros(21)), above).any()
+    assert not share_moved(layout, pauses_of(layout, np.zeros(21)), above).any()
+
+
+def test_a_joint_that_was_heated_stands_for_the_rest_of_the_pause():
+    """Every third pause has 300 s of motion, then 600 s of rest: its motor is less warm for it."""
+    time, above = [0.0], [0.0]
+    for one in range(12):
+        rest = 600.0 if one % 3 == 2 else 0.0
+        heated = 36.0 + (above[-1] - 36.0) * np.exp(-COOLING * 300.0)
+        time.append(time[-1] + 300.0 + rest)
+        above.append(heated * np.exp(-COOLING * rest))
+    for _ in range(8):
+        time.append(time[-1] + 900.0)
+        above.append(above[-1] * np.exp(-COOLING * 900.0))
+    rest, _ = rests(time, 22.0 + np.array(above))
+    paused = np.arange(3, 13, 3)
+    assert np.array(rest)[paused] == pytest.approx(600.0, rel=0.15)
+    assert np.array(rest)[[1, 2, 4, 5, 7, 8, 10, 11]] == pytest.approx(0.0, abs=45.0)
+    assert rest[13:] == [900.0] * 8

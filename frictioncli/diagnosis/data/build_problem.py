@@ -24,6 +24,7 @@ from frictioncli.diagnosis.data.motion_history import (
     distance_of_pairs,
     pauses_of,
     series,
+    share_moved,
     travel_of,
 )
 from frictioncli.diagnosis.data.pair_layout import PairLayout
@@ -196,7 +197,8 @@ def _assembled(
         reference_power = hidden.reference_power
     distance = distance_of_pairs(rows)
     pause = pauses_of(layout, distance)
-    rest, order = series(layout, pause, motor[heads])
+    moved = share_moved(layout, pause, motor[heads])
+    rest, order = series(layout, pause, moved)
     counted = sign_convention(rows)
     in_torque = gravity if rows["load"].isna().all() else gravity_in_torque(rows, columns)
     table = EffectTable(
@@ -219,7 +221,7 @@ def _assembled(
         temperature_slope=np.zeros_like(speed),
         load_slope=np.zeros_like(speed),
         friction_power=friction * speed / reference_power,
-        travel=travel_of(layout, distance, pause, motor[heads])[pair],
+        travel=travel_of(layout, distance, pause, moved)[pair],
         rest=rest[pair],
         order=order[pair],
     )

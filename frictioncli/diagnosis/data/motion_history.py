@@ -51,11 +51,11 @@ def pauses_of(layout: PairLayout, distance: Array) -> Array:
     return np.maximum(np.diff(layout.time) - (moving[:-1] + moving[1:]) / 2, 0.0)
 
 
-def series(layout: PairLayout, pause: Array, temperature: Array) -> tuple[Array, Array]:
+def series(layout: PairLayout, pause: Array, moved: Array) -> tuple[Array, Array]:
     """Return the rest before each pair's measuring series, and the pair's number in it.
 
-    A joint whose motor is warmer after a pause than before it has moved without being recorded:
-    such a pause is no rest. The rest before the first series of a run is infinite.
+    What a joint did not move of a pause is the rest, at its end: a joint is heated, and stands
+    before it is measured. The rest before the first series of a run is infinite.
 
     Parameters
     ----------
@@ -63,8 +63,8 @@ def series(layout: PairLayout, pause: Array, temperature: Array) -> tuple[Array,
         The pairs.
     pause : ndarray, shape (pairs - 1,)
         Time between two pairs. [s]
-    temperature : ndarray, shape (pairs,)
-        Motor temperature of each pair; NaN where unknown: every pause is then a rest. [°C]
+    moved : ndarray, shape (pairs - 1,)
+        Share of it in which the joint moved. [-]
 
     Returns
     -------
@@ -76,7 +76,7 @@ def series(layout: PairLayout, pause: Array, temperature: Array) -> tuple[Array,
         if layout.run[i] != layout.run[i - 1]:
             continue
         if pause[i - 1] > _SERIES_GAP:
-            rest[i] = 0.0 if temperature[i] - temperature[i - 1] > _WARMED else pause[i - 1]
+            rest[i] = pause[i - 1] * (1.0 - moved[i - 1])
         else:
             rest[i], order[i] = rest[i - 1], order[i - 1] + 1
     return rest, order
@@ -90,13 +90,12 @@ def clock_of(layout: PairLayout) -> Array:
     return clock
 
 
-def travel_of(layout: PairLayout, distance: Array, pause: Array, temperature: Array) -> Array:
+def travel_of(layout: PairLayout, distance: Array, pause: Array, moved: Array) -> Array:
     """Return the distance that a joint has travelled before each pair since its run's start [deg].
 
-    The log has the strokes of its pairs. Where the motor was heated during a pause, the joint is
-    assumed to have moved at the highest recorded speed, as in a heating programme, for as much of
-    the pause as the heat tells. That distance may be many times the recorded one, and runs a joint
-    in as well.
+    The log has the strokes of its pairs. In the pauses the joint is assumed to have moved at the
+    highest recorded speed, as in a heating programme. That distance may be many times the recorded
+    one, and runs a joint in as well.
 
     Parameters
     ----------
@@ -106,10 +105,10 @@ def travel_of(layout: PairLayout, distance: Array, pause: Array, temperature: Ar
         Distance of each. [deg]
     pause : ndarray, shape (pairs - 1,)
         Time between two. [s]
-    temperature : ndarray, shape (pairs,)
-        Motor temperature of each pair; NaN where unknown: pauses are then rests. [°C]
+    moved : ndarray, shape (pairs - 1,)
+        Share of it in which the joint moved. [-]
     """
-    unrecorded = share_moved(layout, pause, temperature) * pause * layout.speed.max()
+    unrecorded = moved * pause * layout.speed.max()
     travel = np.append(0.0, np.cumsum(distance[:-1] + unrecorded))
     return travel - travel[np.searchsorted(layout.run, layout.run)]
 
