@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from frictioncli import schemas, tables
 from frictioncli.logs.ingest import ingest
 from frictioncli.logs.samples import quantized_temperature
+from frictioncli.logs.samples.temperature_register import TemperatureRegister, run_knots
 
 from .logs import kuka_columns, write
 
@@ -17,7 +18,8 @@ from .logs import kuka_columns, write
 def interpolated(time, reading, longest=2.0):
     changes = quantized_temperature.find_changes(time, reading, longest=longest)
     step = quantized_temperature.find_step(np.unique(reading))
-    knots = quantized_temperature.interpolation_knots(changes, step=step, span=(time[0], time[-1]))
+    whole = quantized_temperature.Recordings(time[:1], time[-1:], reading[-1:])
+    knots = quantized_temperature.interpolation_knots(changes, step=step, recordings=whole)
     return quantized_temperature.interpolate_temperature(knots, time, reading)
 
 
@@ -133,3 +135,30 @@ def test_a_long_rest_before_the_first_change_stays_at_the_reading():
     found = interpolated(time, np.round(truth))
     assert np.max(np.abs(found - truth)[time < 3500]) < 0.11
     assert np.max(np.abs(found - truth)[time > 3700]) < 0.11
+
+
+def test_where_a_joint_is_heated_in_pauses_the_readings_of_short_recordings_are_not_shifted():
+    """10 min of heating are not logged, then 60 s are, in which the motor hardly warms.
+
+    No recording but the first and the last has a change. A line between these would be degrees off
+    and, held within half a step of the readings, always at the edge of them.
+    """
+    pauses = 600.0 * np.arange(12)
+    level = 24.3 + 25.0 * (1 - np.exp(-pauses / 2400.0))
+    registers, inside, truth, found = [], [], [], []
+    for start, warm in zip(pauses, level, strict=True):
+        time = np.arange(0.0, 60.0, 0.1)
+        true = warm + (0.02 if start in (0.0, pauses[-1]) else 0.0) * time
+        one = TemperatureRegister()
+        one.update(time, np.round(true), 2.0)
+        registers.append((start, one))
+        inside.append((start + time, np.round(true)))
+        truth.append(true)
+    first, *_ = knots = run_knots(registers, starts_known=True)
+    assert all(one is first for one in knots)
+    assert sum(len(one.changes) for _, one in registers) == 2
+    for (time, reading), true in zip(inside, truth, strict=True):
+        found.append(quantized_temperature.interpolate_temperature(first, time, reading) - true)
+    error = np.array(found)[1:-1].mean(axis=1)
+    rounding = np.array([(r - t).mean() for (_, r), t in zip(inside, truth, strict=True)])[1:-1]
+    np.testing.assert_allclose(error, rounding, atol=0.05)

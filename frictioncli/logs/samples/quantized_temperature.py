@@ -3,7 +3,10 @@
 At the moment the register changes, the true temperature lies half-way between the two readings, if
 the register rounds. (A register that truncates gives a constant offset of half a step.) Between
 such moments the temperature is interpolated in time, also across pauses, and it always stays within
-half a step of the reading.
+half a step of the reading. Where it crosses several readings in a pause, the joint was heated or
+stood there, and the straight line across the pause says nothing of the recordings about it: in
+these the temperature stays at the reading, or changes from a moment at which the register does, at
+the rate of the recording, or at the mean rate of all.
 """
 
 from dataclasses import dataclass
@@ -34,6 +37,23 @@ class RegisterChanges:
     time: Array
     before: Array
     after: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Recordings:
+    """Recordings of a temperature register in a run.
+
+    Attributes
+    ----------
+    begin, end : ndarray, shape (recordings,)
+        Times of their first and last reading, ascending. [s]
+    reading : ndarray, shape (recordings,)
+        Their last readings. [°C]
+    """
+
+    begin: Array
+    end: Array
+    reading: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,12 +156,12 @@ def is_continuous(levels: Array) -> bool:
 
 
 def interpolation_knots(
-    changes: RegisterChanges, *, step: float, span: tuple[float, float]
+    changes: RegisterChanges, *, step: float, recordings: Recordings
 ) -> Knots | None:
     """Return the points between which the temperature is interpolated.
 
     Before the first and after the last change the temperature continues with the neighbouring slope
-    to the middle of the reading's band; where the next change would be due only outside the span,
+    to the middle of the reading's band; where the next change would be due only outside the run,
     it continues to the edge of the band.
 
     Parameters
@@ -150,8 +170,8 @@ def interpolation_knots(
         All changes of a run, ascending in time.
     step : float
         Step of the register. [°C]
-    span : tuple of float
-        First and last time of the run. [s]
+    recordings : Recordings
+        The recordings of the run.
 
     Returns
     -------
@@ -167,14 +187,44 @@ def interpolation_knots(
     slopes = (value[edges] - value[edges - 1]) / (time[edges] - time[edges - 1])
     turn_time, turn_value = _turns(time, value, after - value, edges, slopes, step)
     step_duration = step / np.abs(slopes[[0, -1]])  # before the first and after the last change
-    remaining = np.array([time[0] - span[0], span[1] - time[-1]])
+    remaining = np.array([time[0] - recordings.begin[0], recordings.end[-1] - time[-1]])
     fraction = np.where(remaining <= step_duration, 1.0, 0.5)
     ends = 2 * fraction * (np.array([before[0], after[-1]]) - value[[0, -1]]) + value[[0, -1]]
     head, tail = fraction * step_duration
-    all_time = np.concatenate(([time[0] - head], time, turn_time, [time[-1] + tail]))
-    all_value = np.concatenate(([ends[0]], value, turn_value, [ends[1]]))
+    by_pauses = _beside_pauses(time, value, after - value, step, recordings)
+    all_time = np.concatenate(([time[0] - head], time, turn_time, by_pauses[0], [time[-1] + tail]))
+    all_value = np.concatenate(([ends[0]], value, turn_value, by_pauses[1], [ends[1]]))
     order = np.argsort(all_time, kind="stable")
     return Knots(all_time[order], all_value[order], step, len(time))
+
+
+def _beside_pauses(
+    time: Array, value: Array, towards: Array, step: float, recordings: Recordings
+) -> tuple[Array, Array]:
+    """Return time and value of knots at the ends of recordings before and after long changes.
+
+    That is where the changes of the register next to an end are more than a step apart.
+    """
+    begin, end = recordings.begin, recordings.end
+    first, beyond = np.searchsorted(time, begin), np.searchsorted(time, end, side="right")
+    steady, several = first == beyond, beyond - first > 1
+    mean_rate = len(time) * step / max(float(np.sum(end - begin)), 1e-9)
+    rate = np.abs(np.diff(value)) / np.maximum(np.diff(time), 1e-9)
+
+    def knots(at: Array, before: Numbers, own: Numbers, way: int) -> tuple[Array, Array]:
+        """Return knots at ends, each after the change ``before``, with an own change or none."""
+        there = (before >= 0) & (before < len(rate))
+        low = np.clip(before, 0, len(rate) - 1)
+        far = there & (np.abs(value[low + 1] - value[low]) > (1 + _GRID_TOLERANCE) * step)
+        own = np.clip(own, 0, len(time) - 1)
+        own_rate = rate[np.clip(own - (way > 0), 0, len(rate) - 1)]
+        speed = np.where(several & (own_rate > 0), own_rate, mean_rate)
+        moved = np.minimum(speed * np.abs(time[own] - at), step)
+        changed = value[own] + way * np.sign(towards[own]) * moved
+        return at[far], np.where(steady, recordings.reading, changed)[far]
+
+    head, tail = knots(begin, first - 1, first, -1), knots(end, beyond - 1, beyond - 1, 1)
+    return np.concatenate((head[0], tail[0])), np.concatenate((head[1], tail[1]))
 
 
 def _turns(

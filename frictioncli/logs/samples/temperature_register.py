@@ -8,6 +8,7 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.logs.samples.quantized_temperature import (
     Knots,
+    Recordings,
     RegisterChanges,
     find_changes,
     find_step,
@@ -118,13 +119,16 @@ def run_knots(
 
 def _knots(registers: Sequence[tuple[float, TemperatureRegister]], step: float) -> Knots | None:
     found = [(start, changes) for start, register in registers for changes in register.changes]
-    begins = [start + register.first for start, register in registers if register.first is not None]
-    ends = [start + register.last[0] for start, register in registers if register.last is not None]
-    if not found or not begins or not ends:
+    spans = [
+        (start + register.first, start + register.last[0], register.last[1])
+        for start, register in registers
+        if register.first is not None and register.last is not None
+    ]
+    if not found or not spans:
         return None
     changes = RegisterChanges(
         np.concatenate([start + changes.time for start, changes in found]),
         np.concatenate([changes.before for _, changes in found]),
         np.concatenate([changes.after for _, changes in found]),
     )
-    return interpolation_knots(changes, step=step, span=(begins[0], ends[-1]))
+    return interpolation_knots(changes, step=step, recordings=Recordings(*np.array(spans).T))
