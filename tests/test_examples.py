@@ -18,7 +18,7 @@ from frictioncli.diagnosis.documents.apply_extension import friction_beyond
 from frictioncli.diagnosis.documents.extended_document import read_extended
 from frictioncli.model.document import read_models
 from frictioncli.stages.export import deployed, export
-from tests.deployment.logged_pairs import pairs_of, powers
+from tests.deployment.logged_pairs import instants_before, pairs_of
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
@@ -128,15 +128,12 @@ def test_on_the_sample_logs_the_online_gear_is_the_extended_model(work):
     added, _ = friction_beyond(torques, fitted, model)
     pairs, run = pairs_of(torques, added), None
     found = []
-    for pair, power in zip(
-        pairs.itertuples(), powers(torques, model, joint.extension), strict=True
-    ):
+    told = instants_before(torques, model, joint.extension)
+    for pair, instants in zip(pairs.itertuples(), told, strict=True):
         if pair.run != run:
             corrector, run = joint.corrector(), pair.run
-        housing = pair.housing_temperature
-        corrector.update(
-            pair.time, pair.motor_temperature, housing_temperature=housing, power=power
-        )
+        for one in instants:
+            corrector.update(one.time, one.motor, housing_temperature=one.housing, power=one.power)
         found.append(corrector.added_friction(np.sqrt(pair.squared), pair.speed))
     (cause,) = json.loads((work / "diagnosis.json").read_text(encoding="utf-8"))["causes"]
     interval = cause["parameters"]["time_constant"]["ci95"]

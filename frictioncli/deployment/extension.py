@@ -269,6 +269,8 @@ def instants(
         temperature_slope=-about.delta * about.gamma * decay * np.sqrt(speed),
         load_slope=2 * about.alpha * load,
         friction_power=unknown,
+        moved=unknown,
+        warmed_to=unknown,
         travel=unknown,
         rest=unknown,
         order=unknown,

@@ -78,6 +78,9 @@ class EffectTable:
         Its derivative by load torque. [1]
     friction_power : ndarray, shape (rows,)
         Measured friction torque times speed, relative to a reference power. [-]
+    moved, warmed_to : ndarray, shape (rows,)
+        Estimates of the time of unrecorded motion since the pair before [s], and of the motor
+        temperature at its end, after which the joint stands [°C].
     travel : ndarray, shape (rows,)
         Distance travelled in the run before the pair; that of unrecorded moves is estimated. [deg]
     rest, order : ndarray, shape (rows,)
@@ -103,6 +106,8 @@ class EffectTable:
     temperature_slope: Array
     load_slope: Array
     friction_power: Array
+    moved: Array
+    warmed_to: Array
     travel: Array
     rest: Array
     order: Array

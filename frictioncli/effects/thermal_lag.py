@@ -27,9 +27,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from frictioncli.arrays import Array, Flags
+from frictioncli.arrays import Array, Flags, Indices
 from frictioncli.effects.base import Basis, Effect, EffectTable, Signature, friction_only
-from frictioncli.effects.friction_heat import friction_power
+from frictioncli.effects.friction_heat import friction_heat
 from frictioncli.effects.pair_series import (
     first_order_lag,
     first_order_response,
@@ -41,24 +41,28 @@ from frictioncli.effects.parameter import Parameter
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThermalInputs:
-    """What drives the temperature of the gear, pair by pair.
+    """What drives the temperature of the gear, at each pair and at each end of unrecorded motion.
 
     Attributes
     ----------
-    time : ndarray, shape (pairs,)
-        Time of each pair since its run's first sample. [s]
-    restart : ndarray of bool, shape (pairs,)
+    pairs : ndarray of int, shape (pairs,)
+        Which of the instants are pairs: all but those at which unrecorded motion ends and a rest
+        begins.
+    time : ndarray, shape (instants,)
+        Time of each instant since its run's first sample. [s]
+    restart : ndarray of bool, shape (instants,)
         Where a run begins.
     base : ndarray, shape (pairs,)
         The measured temperature that the base model is given. [°C]
-    motor : ndarray, shape (pairs,)
+    motor : ndarray, shape (instants,)
         Temperature of the motor. [°C]
-    housing : ndarray or None, shape (pairs,)
+    housing : ndarray or None, shape (instants,)
         Temperature of the housing; none unless it is known in every pair. [°C]
-    power : ndarray, shape (pairs - 1,)
-        Mean friction power from each pair to the next, relative to the reference power. [-]
+    power : ndarray, shape (instants - 1,)
+        Mean friction power from each instant to the next, relative to the reference power. [-]
     """
 
+    pairs: Indices
     time: Array
     restart: Flags
     base: Array
@@ -70,14 +74,30 @@ class ThermalInputs:
     def of(cls, table: EffectTable) -> "ThermalInputs":
         """Return the inputs of the pairs of a table."""
         heads = pair_heads(table)
-        housing = table.housing_temperature[heads.first]
+        first = heads.first
+        time, restart, rest = table.time[first], starts(table.run[first]), table.rest[first]
+        stands = ~restart & (table.order[first] == 0) & (table.moved[first] > 0) & (rest > 0)
+        after = np.flatnonzero(stands)
+        half = (heads.maximum(table.position) - heads.minimum(table.position)) / table.speed[first]
+        ended = time[after] - half[after] - rest[after]
+        share = (ended - time[after - 1]) / (time[after] - time[after - 1])
+        recorded, unrecorded = friction_heat(table, heads)
+        heat = (recorded[1:] + recorded[:-1]) / 2 + unrecorded
+        heat[after - 1] -= recorded[after] / 2
+        heat = np.insert(heat, after, recorded[after] / 2)
+        instants, restarts = np.insert(time, after, ended), np.insert(restart, after, False)
+        seconds = np.diff(instants)
+        known = ~restarts[1:] & (seconds > 0)
+        housing = table.housing_temperature[first]
+        meanwhile = housing[after - 1] + share * (housing[after] - housing[after - 1])
         return cls(
-            time=table.time[heads.first],
-            restart=starts(table.run[heads.first]),
-            base=table.measured_temperature[heads.first],
-            motor=table.motor_temperature[heads.first],
-            housing=housing if np.isfinite(housing).all() else None,
-            power=friction_power(table, heads),
+            pairs=np.arange(len(first)) + np.cumsum(stands),
+            time=instants,
+            restart=restarts,
+            base=table.measured_temperature[first],
+            motor=np.insert(table.motor_temperature[first], after, table.warmed_to[first][after]),
+            housing=np.insert(housing, after, meanwhile) if np.isfinite(housing).all() else None,
+            power=np.divide(heat, seconds, where=known, out=np.zeros_like(heat)),
         )
 
     def excess(self, time_constant: float) -> Array:
@@ -95,22 +115,21 @@ class ThermalInputs:
             temperature, the filtered friction power, the housing, and the filtered housing
             [°C, -, °C, °C]. The last two are zero where the housing is not known.
         """
-        motor = self.motor - self.base + self._lag(self.motor, time_constant)
+        motor = self._above_base(self.motor) + self._lag(self.motor, time_constant)[self.pairs]
         heat = first_order_response(
             time=self.time, level=self.power, restart=self.restart, time_constant=time_constant
-        )
+        )[self.pairs]
         if self.housing is None:
             return np.column_stack([motor, heat, np.zeros_like(heat), np.zeros_like(heat)])
-        housing = self.housing - self.base
-        return np.column_stack(
-            [motor, heat, housing, housing + self._lag(self.housing, time_constant)]
-        )
+        housing = self._above_base(self.housing)
+        lag = self._lag(self.housing, time_constant)[self.pairs]
+        return np.column_stack([motor, heat, housing, housing + lag])
 
     def inputs_themselves(self) -> Array:
         """Return what the filtered parts follow, shape (pairs, 4); 0 for the power. [°C]."""
-        nothing = np.zeros_like(self.motor)
-        housing = nothing if self.housing is None else self.housing - self.base
-        return np.column_stack([self.motor - self.base, nothing, housing, housing])
+        nothing = np.zeros_like(self.base)
+        housing = nothing if self.housing is None else self._above_base(self.housing)
+        return np.column_stack([self._above_base(self.motor), nothing, housing, housing])
 
     def with_hidden_housing(self, time_constant: float) -> "ThermalInputs":
         """Return the inputs with a housing that follows the motor, where it is not measured.
@@ -123,6 +142,9 @@ class ThermalInputs:
         if self.housing is not None:
             return self
         return replace(self, housing=self.motor + self._lag(self.motor, time_constant))
+
+    def _above_base(self, temperature: Array) -> Array:
+        return temperature[self.pairs] - self.base
 
     def _lag(self, value: Array, time_constant: float) -> Array:
         return first_order_lag(
@@ -208,7 +230,10 @@ EFFECT = Effect(
     ),
     basis=basis,
     needs=("time", "motor_temperature", "temperature_slope"),
-    uses=("measured_temperature", "friction_power", "speed", "position", "housing_temperature"),
+    uses=(
+        *("measured_temperature", "friction_power", "speed", "position", "housing_temperature"),
+        *("moved", "warmed_to", "rest", "order"),
+    ),
     signature=Signature(
         axis="motor_temperature",
         claim=(

@@ -33,7 +33,7 @@ from frictioncli.effects.pair_series import pair_heads
 from frictioncli.model.friction import PUBLISHED
 from tests.correction.models import published_model
 from tests.deployment.joints import LAG, effect
-from tests.deployment.logged_pairs import pairs_of, powers
+from tests.deployment.logged_pairs import instants_before, pairs_of
 from tests.equation_16 import torques
 
 GRAVITY = GravityCoefficients(cosine=95.0, sine=0.0, offset=0.0)
@@ -71,19 +71,27 @@ def replayed(rows, model, schedule):
     base = published_model()
     added, _ = friction_beyond(rows, base, model)
     pairs = pairs_of(rows, added)
-    told = powers(rows, model, extension) if extension.gear else np.zeros(len(pairs))
+    told = instants_before(rows, model, extension) if extension.gear else [[]] * len(pairs)
     found, before = [], None
-    for pair, power in zip(pairs.itertuples(), told, strict=True):
+    for pair, instants in zip(pairs.itertuples(), told, strict=True):
         if before is None or pair.run != before.run:
             corrector = ExtendedCorrector(TemperatureCorrector(PUBLISHED), extension)
         if before is None or (pair.run, pair.phase) != (before.run, before.phase):
             corrector.base = TemperatureCorrector(PUBLISHED, k=schedule.k, tmax=schedule.tmax)
+        for one in instants[:-1]:
+            corrector.update(
+                one.time,
+                one.motor,
+                before.registered,
+                housing_temperature=one.housing,
+                power=one.power,
+            )
         corrector.update(
             pair.time,
             pair.motor_temperature,
             pair.registered,
             housing_temperature=pair.housing_temperature,
-            power=power,
+            power=instants[-1].power if instants else 0.0,
         )
         load = math.sqrt(pair.squared)
         beyond = corrector.added_friction(load, pair.speed)

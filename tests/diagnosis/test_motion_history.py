@@ -11,8 +11,8 @@ from frictioncli.diagnosis.data.motion_history import (
     distance_of_pairs,
     pauses_of,
     series,
-    share_moved,
     travel_of,
+    unrecorded_motion,
 )
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 
@@ -34,7 +34,7 @@ def pairs(time, run=0):
 def rests(time, warm=40.0, run=0):
     layout = pairs(time, run)
     pause = pauses_of(layout, np.zeros(len(time)))
-    moved = share_moved(layout, pause, np.broadcast_to(warm, len(time)).astype(float))
+    moved = unrecorded_motion(layout, pause, np.broadcast_to(warm, len(time)).astype(float))[0]
     rest, order = series(layout, pause, moved)
     return rest.tolist(), order.tolist()
 
@@ -83,7 +83,7 @@ def test_rests_are_alike_within_a_series_and_places_count_up(steps, runs):
     run = np.sort(np.arange(len(steps)) % runs)
     layout = pairs(time, run)
     pause = pauses_of(layout, np.zeros(len(time)))
-    rest, order = series(layout, pause, share_moved(layout, pause, warm))
+    rest, order = series(layout, pause, unrecorded_motion(layout, pause, warm)[0])
     for i in range(1, len(time)):
         if order[i] > 0:
             assert (rest[i], order[i]) == (rest[i - 1], order[i - 1] + 1)
@@ -116,7 +116,7 @@ ROWS = pd.DataFrame(
 def travelled(layout, temperature):
     distance = distance_of_pairs(ROWS)
     pause = pauses_of(layout, distance)
-    return travel_of(layout, distance, pause, share_moved(layout, pause, temperature))
+    return travel_of(layout, distance, pause, unrecorded_motion(layout, pause, temperature)[0])
 
 
 def test_a_pair_travels_its_angles_twice():
@@ -158,7 +158,7 @@ def worked(share, *, pause=400.0, ambient=22.0, hottest=36.0):
     count = len(above)
     layout = pairs(pause * np.arange(count))
     between = pauses_of(layout, np.zeros(count))
-    moved = share_moved(layout, between, ambient + np.array(above))
+    moved = unrecorded_motion(layout, between, ambient + np.array(above))[0]
     found = travel_of(layout, np.zeros(count), between, moved)
     return found / 72_000.0, np.append(0.0, np.cumsum(share)) * pause / 3600.0
 
@@ -194,7 +194,7 @@ def test_where_it_is_warm_does_not_matter(ambient):
 def test_a_motor_that_cools_all_day_has_not_moved():
     above = 30.0 * np.exp(-COOLING * 400.0 * np.arange(21))
     layout = pairs(400.0 * np.arange(21))
-    assert not share_moved(layout, pauses_of(layout, np.zeros(21)), above).any()
+    assert not unrecorded_motion(layout, pauses_of(layout, np.zeros(21)), above)[0].any()
 
 
 def test_a_joint_that_was_heated_stands_for_the_rest_of_the_pause():

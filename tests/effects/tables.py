@@ -4,6 +4,8 @@ from dataclasses import fields
 
 import numpy as np
 
+from frictioncli.diagnosis.data.motion_history import pauses_of, unrecorded_motion
+from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import EffectTable
 from frictioncli.model.friction import PUBLISHED, friction_torque
@@ -12,10 +14,10 @@ COLUMNS = tuple(one.name for one in fields(EffectTable) if one.init)
 
 
 def small(**columns) -> EffectTable:
-    """Return a table of the given columns; others are ones; a pair per row, no delay."""
+    """Return a table of the given columns; others are ones; a pair per row, none unrecorded."""
     rows = max(np.size(values) for values in columns.values())
     filled = {name: np.ones(rows) for name in COLUMNS}
-    filled |= {"run": np.zeros(rows, int), "pair": np.arange(rows)}
+    filled |= {"run": np.zeros(rows, int), "pair": np.arange(rows), "moved": np.zeros(rows)}
     filled |= {name: np.broadcast_to(values, rows) for name, values in columns.items()}
     filled["angle"] = np.broadcast_to(columns.get("angle", filled["position"]), rows)
     return EffectTable(**filled)
@@ -30,7 +32,9 @@ def two_days(*, bins: int = 13, series: int = 12) -> EffectTable:
         for number in range(series):
             heating = number < series // 2
             rest = 0.0 if number == 0 else (30.0 if heating else 600.0)
-            time += rest
+            moved = 300.0 if heating and number else 0.0
+            time += moved + rest
+            travel += moved * 150.0
             for order, speed in enumerate(random.permutation([5.0, 20.0, 60.0, 150.0])):
                 warm = number if heating else series - number
                 motor = 25.0 + 5.0 * warm + 0.2 * order + run
@@ -44,6 +48,8 @@ def two_days(*, bins: int = 13, series: int = 12) -> EffectTable:
                         "measured_temperature": motor,
                         "motor_temperature": motor,
                         "housing_temperature": 23.0 + 0.6 * (motor - 23.0),
+                        "moved": {0: moved, 2: moved / 30.0}.get(order, 0.0),
+                        "warmed_to": motor + 1.0,
                         "travel": travel,
                         "rest": rest if number else np.inf,
                         "order": float(order),
@@ -74,6 +80,21 @@ def two_days(*, bins: int = 13, series: int = 12) -> EffectTable:
         load_slope=2 * PUBLISHED.alpha * load,
         friction_power=friction * rows["speed"] / (100.0 * np.mean(friction)),
     )
+
+
+def moved_before(time, speed, stroke, motor) -> np.ndarray:
+    """Return the time of unrecorded motion before each pair of a run, as its motor tells. [s]"""
+    count = len(time)
+    layout = PairLayout.of(
+        row_pair=np.arange(count),
+        run=np.zeros(count, int),
+        time=time,
+        speed=speed,
+        position=np.zeros(count),
+    )
+    pause = pauses_of(layout, 2 * np.broadcast_to(stroke, count))
+    moved, _ = unrecorded_motion(layout, pause, motor)
+    return np.append(0.0, moved * pause)
 
 
 def selected(table: EffectTable, rows) -> EffectTable:

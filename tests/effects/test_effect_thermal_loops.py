@@ -64,6 +64,7 @@ def test_loops_of_both_signs_are_explained_within_the_bounds(powers, loop):
         time=pairs.time,
         speed=pairs.speed,
         motor_temperature=pairs.motor,
+        moved=np.where(pairs.warming == 1, np.diff(pairs.time, prepend=0.0), 0.0),
         housing_temperature=np.nan,
         friction=friction(fitted.x, pairs.speed, pairs.motor),
         temperature_slope=-fitted.x[3] * falling,

@@ -113,7 +113,13 @@ def test_friction_heats_the_gear_while_the_motor_warms_and_not_while_it_cools():
     """Half the reference power while the motor warms, which ends after 3600 s."""
     time = np.arange(0.0, 9001.0, 60.0)
     motor = 60.0 - np.abs(time - 3600.0) / 100.0
-    table = warmed(time=time, motor_temperature=motor, temperature_slope=-1.0, friction_power=0.5)
+    table = warmed(
+        time=time,
+        motor_temperature=motor,
+        temperature_slope=-1.0,
+        friction_power=0.5,
+        moved=np.where(time <= 3600.0, 60.0, 0.0),
+    )
     heat = -np.array(friction("thermal_lag", table, time_constant=600.0))[:, 1]
     warming = time <= 3600.0
     np.testing.assert_allclose(heat[warming], 0.5 * -np.expm1(-time[warming] / 600.0), rtol=1e-9)
@@ -147,6 +153,7 @@ def test_moves_that_are_not_recorded_heat_as_the_fastest_recorded_ones():
         temperature_slope=-1.0,
         friction_power=np.where(fast, 0.8, 0.1),
         speed=np.where(fast, 100.0, 10.0),
+        moved=60.0,
     )
     heat = -np.array(friction("thermal_lag", table, time_constant=300.0))[:, 1]
     assert heat[-1] == pytest.approx(0.8, rel=1e-6)

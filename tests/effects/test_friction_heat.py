@@ -5,7 +5,7 @@ import pytest
 
 from frictioncli.effects.friction_heat import friction_power
 from frictioncli.effects.pair_series import pair_heads
-from tests.effects.tables import small
+from tests.effects.tables import moved_before, small
 
 STROKE, ACCELERATION, PAUSE = 180.0, 400.0, 0.4
 SPEEDS = (4.0, 200.0, 20.0, 100.0)
@@ -53,6 +53,7 @@ def found_heat(time, motor):
     speed = np.tile(SPEEDS, count // len(SPEEDS))
     cut = speed**2 / (2 * ACCELERATION)
     table = small(
+        moved=np.repeat(moved_before(time, speed, STROKE - 2 * cut, motor), 2),
         time=np.repeat(time, 2),
         pair=np.repeat(np.arange(count), 2),
         position=np.column_stack([cut, STROKE - cut]).ravel(),

@@ -6,7 +6,7 @@ from scipy.signal import lfilter
 
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.sensor_lag import basis as sensor_lag
-from tests.effects.tables import small
+from tests.effects.tables import moved_before, small
 
 GRAVITY, OFFSET, ALPHA, COULOMB = 60.0, 4.0, 0.001, 10.0
 RADIANS = np.pi / 180
@@ -185,6 +185,7 @@ def heated(lag, noise, random):
         "order": np.array(orders, float),
         "temperature": reading,
         "motor_temperature": reading,
+        "moved": moved_before(at * step, np.tile(speeds, 24), 100.0, reading),
     }
     rows = {name: np.repeat(values, 2) for name, values in per_pair.items()}
     pair, position = np.repeat(np.arange(len(at)), 2), np.tile([20.0, 120.0], len(at))

@@ -24,8 +24,8 @@ from frictioncli.diagnosis.data.motion_history import (
     distance_of_pairs,
     pauses_of,
     series,
-    share_moved,
     travel_of,
+    unrecorded_motion,
 )
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.diagnosis.data.pose_gravity import gravities_by_pose
@@ -197,7 +197,7 @@ def _assembled(
         reference_power = hidden.reference_power
     distance = distance_of_pairs(rows)
     pause = pauses_of(layout, distance)
-    moved = share_moved(layout, pause, motor[heads])
+    moved, warmed_to = unrecorded_motion(layout, pause, motor[heads])
     rest, order = series(layout, pause, moved)
     counted = sign_convention(rows)
     in_torque = gravity if rows["load"].isna().all() else gravity_in_torque(rows, columns)
@@ -221,6 +221,8 @@ def _assembled(
         temperature_slope=np.zeros_like(speed),
         load_slope=np.zeros_like(speed),
         friction_power=friction * speed / reference_power,
+        moved=np.append(0.0, moved * pause)[pair],
+        warmed_to=np.append(motor[0], warmed_to)[pair],
         travel=travel_of(layout, distance, pause, moved)[pair],
         rest=rest[pair],
         order=order[pair],

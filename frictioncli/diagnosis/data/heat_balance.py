@@ -17,8 +17,10 @@ _QUICK = 0.75
 speed, or in a part of a pause, it cools more slowly than at rest."""
 
 
-def heat_of(rise: Array, seconds: Array, above: Array, long: Flags, seen: float) -> Array:
-    """Return the rise of temperature that each interval would have without cooling.
+def rate_of_cooling(rise: Array, seconds: Array, above: Array, long: Flags, seen: float) -> float:
+    """Return the rate at which a motor at rest loses its excess over ambient [1/s].
+
+    Where it never cools, its warming tells: with equal work it slows down as the excess grows.
 
     Parameters
     ----------
@@ -31,29 +33,14 @@ def heat_of(rise: Array, seconds: Array, above: Array, long: Flags, seen: float)
     seen : float
         Least change of temperature that counts. [°C]
 
-    Returns
-    -------
-    ndarray, shape (intervals,)
-        Rise plus cooling. [°C]
-
     Examples
     --------
-    A motor that cools by a tenth of its excess in 200 s needs heat to stay 30 °C above ambient:
+    A motor that cools by a tenth of its excess in 200 s:
 
     >>> import numpy as np
-    >>> rise = np.array([6.0, 0.0, -3.0])
-    >>> above = np.array([10.0, 30.0, 30.0])
-    >>> heat_of(rise, np.full(3, 200.0), above, np.full(3, True), 0.2)
-    array([7., 3., 0.])
-    """
-    cooling = _rate_of_cooling(rise, seconds, above, long, seen)
-    return rise + cooling * above * seconds
-
-
-def _rate_of_cooling(rise: Array, seconds: Array, above: Array, long: Flags, seen: float) -> float:
-    """Return the rate at which a motor at rest loses its excess over ambient [1/s].
-
-    Where it never cools, its warming tells: with equal work it slows down as the excess grows.
+    >>> rise, above = np.array([6.0, 0.0, -3.0]), np.array([10.0, 30.0, 30.0])
+    >>> rate_of_cooling(rise, np.full(3, 200.0), above, np.full(3, True), 0.2)
+    0.0005
     """
     cools = long & (rise < -seen) & (above > 0)
     if cools.any():

@@ -89,7 +89,7 @@ class HiddenTemperature(msgspec.Struct, frozen=True, kw_only=True):
         excess = heads.spread(inputs.excess(self.time_constant) @ self.coefficients)
         housing = table.housing_temperature
         if self.housing_time_constant is not None and inputs.housing is not None:
-            housing = heads.spread(inputs.housing)
+            housing = heads.spread(inputs.housing[inputs.pairs])
         return replace(
             table, temperature=table.measured_temperature + excess, housing_temperature=housing
         )

@@ -1,10 +1,10 @@
-"""Motion of a joint before each pair: rest, time and distance travelled."""
+"""Motion of a joint before each pair: rest, time and distance travelled, recorded or not."""
 
 import numpy as np
 import pandas as pd
 
 from frictioncli.arrays import Array, Indices
-from frictioncli.diagnosis.data.heat_balance import heat_of
+from frictioncli.diagnosis.data.heat_balance import rate_of_cooling
 from frictioncli.diagnosis.data.pair_layout import PairLayout
 from frictioncli.model.zero_load import PAIR_KEY
 
@@ -20,6 +20,9 @@ _WARMED = 0.2
 _LEAST_SHARE = 0.25
 """Least heat of a pause that counts as motion, relative to the same median: midway between rest and
 half the work."""
+
+_THROUGHOUT = 0.8
+"""A pause with more of it had motion throughout."""
 
 
 def distance_of_pairs(rows: pd.DataFrame) -> Array:
@@ -113,38 +116,45 @@ def travel_of(layout: PairLayout, distance: Array, pause: Array, moved: Array) -
     return travel - travel[np.searchsorted(layout.run, layout.run)]
 
 
-def share_moved(layout: PairLayout, pause: Array, temperature: Array) -> Array:
-    """Return the share of each pause in which the joint moved, as its motor's temperature tells.
+def unrecorded_motion(layout: PairLayout, pause: Array, temperature: Array) -> tuple[Array, Array]:
+    """Return the share of each pause in which the joint moved, and how warm the motor was then.
+
+    The share is the heat of a pause that warmed the motor, or kept it warm against its cooling,
+    relative to the median of those that warmed it. A balance of one node does not tell more than
+    that a joint moved nearly throughout, or hardly. It stands after the motion, and its motor cools
+    until the next pair.
 
     Parameters
     ----------
     layout : PairLayout
         The pairs.
     pause : ndarray, shape (pairs - 1,)
-        Time between two. [s]
+        Time between two pairs. [s]
     temperature : ndarray, shape (pairs,)
         Motor temperature of each pair; NaN where unknown: pauses are then rests. [°C]
 
     Returns
     -------
-    ndarray, shape (pairs - 1,)
-        Heat of the pauses that warmed the motor, or kept it warm against its cooling, relative to
-        the median of those that warmed it; 1 at most, and 0 below a quarter. [-]
+    moved, warmed_to : ndarray, shape (pairs - 1,)
+        The share, 0 to 1, and the temperature of the motor at the end of the motion. [-], [°C]
     """
     same = np.diff(layout.run) == 0
     rise, seconds = np.diff(temperature), np.where(same, np.diff(layout.time), 0.0)
-    ambient = _lowest(temperature, layout.run)[:-1]
+    ambient = _lowest(temperature, layout.run)[1:]
     above = (temperature[:-1] + temperature[1:]) / 2 - ambient
     warmed = same & (pause > _IDLE) & (rise > _WARMED)
     if not warmed.any():
-        return np.zeros_like(rise)
+        return np.zeros_like(rise), temperature[1:]
     # after a short pause the heat of the pairs about it may be what keeps the motor warm
     long = same & (pause > _SERIES_GAP) & np.isfinite(rise)
-    heat = heat_of(rise, seconds, above, long, _WARMED)
+    cooling = rate_of_cooling(rise, seconds, above, long, _WARMED)
+    heat = rise + cooling * above * seconds
     heated = warmed | (long & (heat > _WARMED))
     rate = np.divide(heat, pause, out=np.zeros_like(rise), where=heated)
     share = rate / float(np.median(rate[warmed]))
-    return np.where(share >= _LEAST_SHARE, np.minimum(share, 1.0), 0.0)
+    moved = np.where(share < _LEAST_SHARE, 0.0, np.where(share > _THROUGHOUT, 1.0, share))
+    rest = np.where(moved > 0, pause * (1.0 - moved), 0.0)
+    return moved, ambient + (temperature[1:] - ambient) * np.exp(cooling * rest)
 
 
 def _lowest(temperature: Array, run: Indices) -> Array:
