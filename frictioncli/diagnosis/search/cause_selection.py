@@ -34,6 +34,9 @@ _NOTHING = 0.2
 _AT_BOUND = 0.99
 """Share of the range of a time from which on it lies on the bound of what is tried."""
 
+_SETTLES = 0.5
+"""Share of the excess at the start of a run from which friction settles rather than recovers."""
+
 WORSE = 1.05
 """RMS misfit of a new run with a cause over that without it from which on the run refutes it."""
 
@@ -244,12 +247,15 @@ def uncertain_causes(
 def _recovers_without_end(extension: Extension, number: int) -> bool:
     """Return whether an effect is friction that recovers in no rest, with an excess of any size.
 
-    It then grows steadily, as friction that rises over each day.
+    Where little of it is there at the start of a run, it then grows steadily, as friction that
+    rises over each day. Where most is, it is friction that settles, and the night was the rest.
     """
     fit = extension.effects[number]
     if fit.effect is not REST_RECOVERY:
         return False
     (rest,) = (one for one in fit.effect.shape if one.name == "rest_time")
+    if fit.shape["at_start"] > _SETTLES:
+        return False
     error = extension.errors[extension.place(number)][0]
     return rest.share(fit.shape["rest_time"]) >= _AT_BOUND and fit.coefficients[0] <= Z95 * error
 
