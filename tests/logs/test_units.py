@@ -104,13 +104,29 @@ def test_lever_arm_of_half_a_metre():
     tool = 500 * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
     assert position_units.tool_path_per_angle(tool, angle[:, None]) == pytest.approx(500, rel=1e-4)
     in_rad = position_units.possible_position_units(
-        largest=1, span=2, on_motor=False, path_per_angle=500
+        largest=1, span=2, on_motor=False, paths_per_angle=(500,)
     )
     assert in_rad[0] == {"rad"}
     in_degrees = position_units.possible_position_units(
-        largest=5, span=4, on_motor=False, path_per_angle=500 * np.pi / 180
+        largest=5, span=4, on_motor=False, paths_per_angle=(500 * np.pi / 180,)
     )
     assert in_degrees[0] == {"deg"}
+
+
+@pytest.mark.parametrize("lever", [0.25, 0.5, 1.3])  # [m]
+@pytest.mark.parametrize("per_metre", [1.0, 1000.0])
+@pytest.mark.parametrize("per_degree", [np.pi / 180, 1.0])
+def test_a_tool_in_metres_or_millimetres(tmp_path, lever, per_metre, per_degree):
+    """Robots of many makers log the tool in m beside angles in rad, without any unit."""
+    time, position, velocity, torque = back_and_forth()
+    angle = np.radians(position)
+    columns = {"time": time, "q1": per_degree * position, "q2": 0.3 + 0 * time}
+    columns |= {"qd1": per_degree * velocity, "qd2": 0 * time}
+    columns |= {"x": per_metre * lever * np.cos(angle), "y": per_metre * lever * np.sin(angle)}
+    columns |= {"z": per_metre * 0.1 + 0 * time, "tau1": torque, "tau2": 0.1 + 0 * time}
+    log = write(tmp_path / "log.csv", columns, delimiter=",", digits=9)
+    ingest([log], tmp_path / "work", IngestSettings(joints=(1,)))
+    np.testing.assert_allclose(samples(tmp_path / "work")["position"], position, atol=1e-5)
 
 
 def test_radians_under_a_degree_header(tmp_path):

@@ -115,7 +115,7 @@ def _fitting_units(
     largest, span = float(np.max(np.abs(position))), float(np.ptp(position))
     usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=False)
     possible, _ = position_units.possible_position_units(
-        largest=largest, span=span, on_motor=False, path_per_angle=None
+        largest=largest, span=span, on_motor=False, paths_per_angle=()
     )
     if written[0] in ONLY_WRITTEN:
         possible = frozenset({written[0]})

@@ -174,7 +174,7 @@ def _by_position(
     values = columns.head.values[column]
     largest, span = float(np.max(np.abs(values))), float(np.ptp(values))
     possible, unit_reason = position_units.possible_position_units(
-        largest=largest, span=span, on_motor=False, path_per_angle=None
+        largest=largest, span=span, on_motor=False, paths_per_angle=()
     )
     usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=False)
     unit = usual if usual in possible else min(possible)

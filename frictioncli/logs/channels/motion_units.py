@@ -123,7 +123,7 @@ def _axis_units(
         largest=largest,
         span=span,
         on_motor=on_motor,
-        path_per_angle=surveyed_motion.tool_path_per_angle(survey, family),
+        paths_per_angle=surveyed_motion.tool_paths_per_angle(survey, family),
     )
     if position.name == names.INTEGRATED:  # in deg by construction, however far it goes
         possible, why = frozenset({"deg"}), ""

@@ -1,6 +1,6 @@
 """Units of positions by their values: the range of motion of a joint, and the path of the tool."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -64,14 +64,14 @@ def tool_path_per_angle(tool: Array, axes: Array) -> float | None:
     Parameters
     ----------
     tool : ndarray, shape (n, 3)
-        Tool position. [mm]
+        Tool position. [raw]
     axes : ndarray, shape (n, axes)
         Axis positions. [raw]
 
     Returns
     -------
     float or None
-        None where nothing moves; the lever arm in mm if positions are in rad. [mm/raw]
+        None where nothing moves; the lever arm if positions are in rad. [raw]
 
     Examples
     --------
@@ -91,7 +91,7 @@ def tool_path_per_angle(tool: Array, axes: Array) -> float | None:
 
 
 def possible_position_units(
-    *, largest: float, span: float, on_motor: bool, path_per_angle: float | None
+    *, largest: float, span: float, on_motor: bool, paths_per_angle: Collection[float]
 ) -> tuple[frozenset[str], str]:
     """Return the units that positions can be in, and why.
 
@@ -101,13 +101,14 @@ def possible_position_units(
         Largest absolute position and position range. [raw]
     on_motor : bool
         Whether it is the position of the motor, which turns without limit.
-    path_per_angle : float or None
-        Result of :func:`tool_path_per_angle`. [mm/raw]
+    paths_per_angle : collection of float
+        Path of the tool per angle in each unit that it may be logged in; empty where it is not
+        known. [mm/raw]
 
     Examples
     --------
     >>> units, why = possible_position_units(
-    ...     largest=170, span=300, on_motor=False, path_per_angle=None
+    ...     largest=170, span=300, on_motor=False, paths_per_angle=()
     ... )
     >>> sorted(units), why
     (['deg'], 'values reach ±170, beyond a turn in rad')
@@ -118,18 +119,16 @@ def possible_position_units(
         return frozenset({"deg", "rad"}), ""
     if largest > RADIAN_LIMIT:
         return frozenset({"deg"}), f"values reach ±{largest:.4g}, beyond a turn in rad"
-    if path_per_angle is not None:
-        lever_arms = {
-            "rad": path_per_angle / 1000,
-            "deg": path_per_angle / 1000 * _DEGREES_PER_RADIAN,
-        }
-        fitting = [u for u, arm in lever_arms.items() if _LEVER_ARM[0] <= arm <= _LEVER_ARM[1]]
-        if len(fitting) == 1:
-            (unit,) = fitting
-            return (
-                frozenset(fitting),
-                f"the tool then moves on a lever of {lever_arms[unit]:.2g} m",
-            )
+    arms = {"rad": 1e-3, "deg": 1e-3 * _DEGREES_PER_RADIAN}  # [m/mm]
+    fitting = {
+        unit: path * arm
+        for path in paths_per_angle
+        for unit, arm in arms.items()
+        if _LEVER_ARM[0] <= path * arm <= _LEVER_ARM[1]
+    }
+    if len(fitting) == 1:
+        ((unit, lever_arm),) = fitting.items()
+        return frozenset({unit}), f"the tool then moves on a lever of {lever_arm:.2g} m"
     if span > _LEAST_SPAN:
         return frozenset({"deg", "rad"}), f"values span {span:.2g} and stay within ±6.3"
     return frozenset({"deg", "rad"}), "it does not move"

@@ -10,6 +10,9 @@ from frictioncli.logs.channels.recognition import LogChannel
 from frictioncli.logs.channels.survey import Survey
 from frictioncli.logs.channels.unit_evidence import RawMotion
 
+_FARTHEST_TOOL = 10.0
+"""Largest coordinate of the tool of an arm; that of one in mm is larger. [m]"""
+
 
 def with_moving_position(channels: JointChannels, survey: Survey) -> JointChannels:
     """Return a joint's channels with a position that changes, where the preferred one never does.
@@ -110,8 +113,11 @@ def motions(
     return found
 
 
-def tool_path_per_angle(survey: Survey, family: list[LogChannel]) -> float | None:
+def tool_paths_per_angle(survey: Survey, family: list[LogChannel]) -> tuple[float, ...]:
     """Return the tool's path per angle of the moving axis, median over the logs.
+
+    Where no unit is written, coordinates that an arm may have in m are taken as m or mm, larger
+    ones as mm.
 
     Parameters
     ----------
@@ -122,22 +128,28 @@ def tool_path_per_angle(survey: Survey, family: list[LogChannel]) -> float | Non
 
     Returns
     -------
-    float or None
-        None where the tool's position is not logged, or nothing moves. [mm/raw]
+    tuple of float
+        In each unit that the tool may be logged in; empty where its position is not logged, or
+        nothing moves. [mm/raw]
     """
     tool = survey.tool()
     if not tool:
-        return None
-    scale = 1000.0 if all(c.unit.strip() == "m" for c in tool) else 1.0
+        return ()
     found = []
     for head in survey.heads:
-        points = scale * np.stack([head[c.column] for c in tool], axis=1)
+        points = np.stack([head[c.column] for c in tool], axis=1)
         axes = np.stack([head[c.column] for c in family], axis=1)
         good = np.isfinite(points).all(axis=1) & np.isfinite(axes).all(axis=1)
         ratio = position_units.tool_path_per_angle(points[good], axes[good])
         if ratio is not None:
             found.append(ratio)
-    return float(np.median(found)) if found else None
+    if not found:
+        return ()
+    path, written = float(np.median(found)), {channel.unit.strip() for channel in tool}
+    if written == {"m"}:
+        return (1000.0 * path,)
+    usual = max(float(np.quantile(np.abs(survey.pooled(c)), 0.95)) for c in tool)
+    return (path, 1000.0 * path) if written == {""} and usual <= _FARTHEST_TOOL else (path,)
 
 
 def period(survey: Survey, time: LogChannel) -> float | None:
