@@ -67,6 +67,30 @@ def test_each_number_or_name_is_a_joint(tmp_path, names, column, joints, order):
     assert list(recordings["rows_read"]) == [len(TIME)] * 3
 
 
+@pytest.mark.parametrize(
+    ("clock", "cells"),
+    [
+        ("stamp_sec,stamp_nsec", lambda t: f"{1_700_000_000 + int(t)},{round(t % 1 * 1e9)}"),
+        ("date,clock", lambda t: f"2026-05-04,23:59:{58 + t:09.6f}" if t < 2 else midnight(t)),
+    ],
+)
+def test_names_beside_a_time_in_two_columns(tmp_path, clock, cells):
+    """Joint states of ROS are written in long tables with seconds and nanoseconds."""
+    rows = [
+        f"{cells(time)},{name},{part * p:.6f},{u + joint:.6f}"
+        for time, p, u in zip(TIME, POSITION, TORQUE, strict=True)
+        for (joint, part), name in zip(SPEEDS.items(), ("hip", "knee", "ankle"), strict=True)
+    ]
+    log = tmp_path / "log.csv"
+    log.write_text("\n".join([f"{clock},joint_name,position [deg],effort [Nm]", *rows, ""]))
+    check(ingest([log], tmp_path / "work"), tmp_path / "work", {1: 0, 2: 1, 3: 2})
+
+
+def midnight(time):
+    """Return date and time of day two seconds after the first midnight of the log."""
+    return f"2026-05-05,00:00:{time - 2:09.6f}"
+
+
 def test_names_are_told(tmp_path):
     path = long_log(tmp_path / "log.csv", ("hip", "knee", "ankle"), "name")
     notes = "\n".join(ingest([path], tmp_path / "work").notes)

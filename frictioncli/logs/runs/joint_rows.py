@@ -4,7 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -198,16 +198,31 @@ def _told(
 ) -> tuple[LogSource, tuple[float, ...], tuple[str, ...]] | None:
     """Return the log, what stands for its joints, and their names; None where there are not two."""
     numbers = _numbers(source, column, _MAY_MEASURE)
-    if numbers is None or len(numbers) or not isinstance(source, DelimitedText):
+    text = _text_of(source)
+    if numbers is None or len(numbers) or text is None:
         return (source, numbers, tuple(f"{number:.0f}" for number in numbers)) if numbers else None
-    names = source.names_in(column, _MOST_DIFFERENT)
-    with_names = source.with_names(column, names)
+    names = text.names_in(column, _MOST_DIFFERENT)
+    with_names = _with_text(source, text.with_names(column, names))
     places = _numbers(with_names, column, _MAY_BE_OTHER) if names else None
     if not places:
         return None
     names = tuple(names[int(place) - 1] for place in sorted(places))
     numbers = tuple(float(place) for place in range(1, len(names) + 1))
-    return source.with_names(column, names), numbers, names
+    return _with_text(source, text.with_names(column, names)), numbers, names
+
+
+def _text_of(source: LogSource) -> DelimitedText | None:
+    """Return the text that a log is read from, also where its time is joined from two columns."""
+    while isinstance(source, DerivedSource):
+        source = source.source
+    return source if isinstance(source, DelimitedText) else None
+
+
+def _with_text(source: LogSource, text: DelimitedText) -> LogSource:
+    """Return a log that is read from another text with the same columns."""
+    if not isinstance(source, DerivedSource):
+        return text
+    return replace(source, source=_with_text(source.source, text))
 
 
 def _numbers(
