@@ -58,6 +58,10 @@ def read(path, work, **settings):
         ("%Y/%m/%d %H:%M:%S.%f", ",", "."),
         ("%Y-%m-%d %I:%M:%S.%f %p", ",", "."),
         ('"%Y-%m-%dT%H:%M:%S,%f"', ",", "."),
+        ("%Y%m%d%H%M%S%f", ",", "."),
+        ("%Y%m%d%H%M%S.%f", ";", ","),
+        ("%Y%m%d_%H%M%S_%f", ",", "."),
+        ("%Y%m%dT%H%M%S.%f", " ", "."),
     ],
 )
 def test_a_date_with_time_of_day(tmp_path, form, delimiter, decimal, start):
@@ -147,6 +151,7 @@ def test_damaged_dates_cost_their_rows_only(tmp_path):
 
 
 FORMS = ["%d.%m.%Y %H:%M:%S.%f", "%m/%d/%Y %I:%M:%S.%f %p", "%Y/%m/%d %H:%M:%S.%f", "%d.%m.%Y"]
+FORMS += ["%Y%m%d%H%M%S%f"]
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -165,7 +170,23 @@ def test_seconds_are_those_of_the_calendar(form, moments):
 
 
 @pytest.mark.parametrize(
-    "cell", ["1.5", "1.234.567,8", "12:30", "192.168.2.10", "1.2", "v1.2.3", "", "1e5", "14.03."]
+    "cell",
+    [
+        *("1.5", "1.234.567,8", "12:30", "192.168.2.10", "1.2", "v1.2.3", "", "1e5", "14.03."),
+        # since 1970 in ns and us; no month 13, no hour 24; a date alone; digits of a number
+        *("1710417533008000000", "1710417533008000", "20241314115853", "20240314245853"),
+        *("20240314", "0.20240314115853", "12024031411585300"),
+    ],
 )
 def test_what_is_no_date(cell):
     assert not is_moment(cell)
+
+
+def test_a_counter_that_looks_like_a_date_now_and_then_is_a_number(tmp_path):
+    """A clock in ns since the controller was started 5.6 h ago, every 12 ms."""
+    ticks = [f"{20_180_000_000_000 + round(1e9 * t)}" for t in TIME]
+    assert any(is_moment(tick) for tick in ticks)
+    path = log(tmp_path / "log.csv", ["time [ns]"], [ticks])
+    summary, samples, _ = read(path, tmp_path / "work")
+    assert summary.rows_kept == len(TIME)
+    np.testing.assert_allclose(samples["time"], TIME, atol=1e-6)

@@ -1,7 +1,7 @@
 """Dates and times of day as text: their form is found from some cells, and they become seconds.
 
 ISO 8601 is left to pandas. The other forms are a date with the year first or last, a time of day
-with or without AM or PM, or both.
+with or without AM or PM, or both; and both in digits alone, as ``20240314115853008``.
 """
 
 import re
@@ -15,6 +15,7 @@ import pyarrow.compute as pc
 from frictioncli.arrays import Array
 
 ISO, YEAR_FIRST, DAY_FIRST, MONTH_FIRST, CLOCK = "iso", "ymd", "dmy", "mdy", "clock"
+DIGITS = "digits"
 DAY = 86400.0  # [s]
 
 _ISO = re.compile(r"\s*\d{4}-\d\d-\d\d([T ]\d\d:\d\d[^AaPp]*+)?\s*")
@@ -25,21 +26,29 @@ _TIME = (
 _OR_WITH_TIME = rf"(?:[ T]{{1,4}}{_TIME})?"
 _YEAR_LAST = rf"(?P<a>\d{{1,2}})[./-](?P<b>\d{{1,2}})[./-](?P<c>\d{{4}}|\d{{2}}){_OR_WITH_TIME}"
 _YEAR_AHEAD = rf"(?P<c>\d{{4}})[./-](?P<a>\d{{1,2}})[./-](?P<b>\d{{1,2}}){_OR_WITH_TIME}"
+_IN_DIGITS = (
+    r"(?P<c>20\d\d)(?P<a>0[1-9]|1[0-2])(?P<b>0[1-9]|[12]\d|3[01])[_T-]?"
+    r"(?P<hour>[01]\d|2[0-3])(?P<minute>[0-5]\d)(?P<second>[0-5]\d)[._]?(?P<part>\d{0,9})(?P<half>)"
+)
+_LEAST_DIGITS = 14
 _TEXTS = {
     YEAR_FIRST: _YEAR_AHEAD,
     DAY_FIRST: _YEAR_LAST,
     MONTH_FIRST: _YEAR_LAST,
     CLOCK: _TIME,
+    DIGITS: _IN_DIGITS,
 }
 _DATE_YEAR_LAST = re.compile(rf"\s*{_YEAR_LAST}\s*", re.ASCII)
 _DATE_YEAR_AHEAD = re.compile(rf"\s*{_YEAR_AHEAD}\s*", re.ASCII)
 _TIME_OF_DAY = re.compile(rf"\s*{_TIME}\s*", re.ASCII)
+_DATE_IN_DIGITS = re.compile(rf"\s*{_IN_DIGITS}\s*", re.ASCII)
 _FIRST_OF_CENTURY, _PIVOT = 1900, 69
 """Years of two digits are 1969 to 2068."""
 _WORDS = {
     DAY_FIRST: "day.month.year",
     MONTH_FIRST: "month/day/year",
     YEAR_FIRST: "year.month.day",
+    DIGITS: "in digits alone",
 }
 
 
@@ -50,7 +59,8 @@ class MomentForm:
     Attributes
     ----------
     order : str
-        ``iso``, ``ymd``, ``dmy`` or ``mdy``; ``clock`` for a time of day alone.
+        ``iso``, ``ymd``, ``dmy`` or ``mdy``; ``clock`` for a time of day alone, ``digits`` for date
+        and time of day without separators.
     has_clock : bool
         Whether there is a time of day.
     is_certain : bool
@@ -85,6 +95,8 @@ def is_moment(cell: str) -> bool:
     --------
     >>> [is_moment(cell) for cell in ("14.03.2024", "11:58:53.008 PM", "12:30", "1.234")]
     [True, True, False, False]
+    >>> is_moment("20240314115853008"), is_moment("1710417533008000000")
+    (True, False)
     """
     return _order(cell) is not None
 
@@ -104,7 +116,7 @@ def moment_form(cells: Sequence[str]) -> MomentForm | None:
     found = [order for _, order in orders]
     order = max(dict.fromkeys(found), key=found.count)
     same = [cell for cell, one in orders if one == order]
-    has_clock = sum(":" in cell for cell in same) > len(same) / 2
+    has_clock = order == DIGITS or sum(":" in cell for cell in same) > len(same) / 2
     if order != DAY_FIRST:
         return MomentForm(order, has_clock)
     days = [(int(m["a"]), int(m["b"])) for m in map(_DATE_YEAR_LAST.fullmatch, same) if m]
@@ -221,7 +233,8 @@ def _order(cell: str) -> str | None:
     """Return the order of a cell, ``dmy`` for all dates with the year last; None for no moment."""
     # most cells are numbers: this takes less time than the patterns
     if "/" not in cell and max(map(cell.count, ".-:")) < 2:
-        return None
+        in_digits = len(cell) >= _LEAST_DIGITS and _DATE_IN_DIGITS.fullmatch(cell)
+        return DIGITS if in_digits else None
     if _ISO.fullmatch(cell):
         return ISO
     if _DATE_YEAR_LAST.fullmatch(cell):
