@@ -49,6 +49,22 @@ from .logs import back_and_forth, kuka_columns, write
         ("MsrTorque_A2", "torque", 2, "joint"),
         ("instCurrent_3", "torque", 3, "motor"),
         ("actual_current_as_torque_0", "torque", 1, "joint"),
+        # RTDE by a script, a bridge of a robot to MQTT, YARP, and drives of Damiao
+        ("actualI2", "torque", 2, "motor"),
+        ("measured_tq_1", "torque", 1, "joint"),
+        ("external_tq_1", None, None, None),
+        ("tau_measured[2]", "torque", 2, "joint"),
+        ("joint_angles_1", "position", 1, "joint"),
+        ("motor_currents_1", "torque", 1, "motor"),
+        ("t_rotor", "motor_temperature", None, "joint"),
+        ("Tcoil_C", "motor_temperature", None, "joint"),
+        ("t_mos", None, None, None),
+        # what is current is present, but a current before anything else
+        ("current_angle_deg", "position", None, "joint"),
+        ("current joint velocity 2", "velocity", 2, "joint"),
+        ("current_position_counts", None, None, None),
+        ("current_2", "torque", 2, "motor"),
+        ("current_limit", None, None, None),
         ("actuator2.position", "position", 2, "joint"),
         ("field.effort1", "torque", 1, "joint"),
         ("cur (A)", "torque", None, "motor"),
@@ -163,12 +179,12 @@ def test_a_last_word_that_means_something_else_is_no_unit(column):
     ("columns", "expected"),
     [
         (["t", "theta", "tau", "T"], ["time", "position", "torque", "motor_temperature"]),
-        (["t", "theta", "T"], ["time", "position", "time"]),
+        (["t", "theta", "T"], ["time", "position"]),
         (["T", "theta", "tau"], ["time", "position", "torque"]),
-        (["t", "T", "tau", "motor_temp"], ["time", "time", "torque", "motor_temperature"]),
+        (["T", "t_ms", "tau", "motor_temp"], ["time", "torque", "motor_temperature"]),
     ],
 )
-def test_a_capital_t_is_the_temperature_beside_a_time_and_a_torque(columns, expected):
+def test_a_capital_t_beside_a_time_is_no_time_but_a_temperature_beside_a_torque(columns, expected):
     assert [channel.quantity for channel in recognise_channels(columns)] == expected
 
 
@@ -243,6 +259,8 @@ def test_names_in_chinese_and_japanese(column, quantity, joint):
         (["experiment_time_sec", "q1", "tau1"], "experiment_time_sec"),
         (["solve_time", "cycleTime_ms", "q1", "tau1"], None),
         (["t", "sim_time", "q1", "tau1"], "t"),
+        (["ts_ms", "q1", "tau1"], "ts_ms"),
+        (["T_s", "Ts [°C]", "q1", "tau1"], None),
     ],
 )
 def test_a_clock_is_known_by_its_last_word_where_there_is_no_other_time(columns, clock):

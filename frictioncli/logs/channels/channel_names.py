@@ -83,7 +83,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " axisangle axisposition achsposition jointpos qact observationstate observationqpos"
         " posestimate positionachse theta linkposition linkangle outputposition outputangle"
         " posicion posicin posizione linkpos outputpos apos"
-        " stateposition statepos",
+        " stateposition statepos angles jointangles",
     ),
     (
         Meaning(POSITION, MOTOR_SIDE),
@@ -116,7 +116,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " gelenkmoment torqact axistorqact acttorque acttorq observationeffort observationtorque"
         " tauest trq eff couple drehmomentachse jointeffort jointefforts acttrq trqact"
         " linktorque outputtorque coppia taumsr msrtorque currentastorque torquecur torquecurrent"
-        " statetau statetorque stateeffort",
+        " statetau statetorque stateeffort tq taumeas taumeasured",
     ),
     (Meaning(TORQUE, JOINT_SIDE, 2), "geartorqact geartorque geartorq getriebemoment"),
     (
@@ -124,7 +124,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         "iststrom strom current currents motorcurrent motorstrom actualcurrent actualjointcurrent"
         " robotactualjointcurrent currentact actcurrent curr jointcurrent macur observationcurrent"
         " iqmeasured currentmotor iq iqa iqact iqactual qcurrent currentq qaxiscurrent motoriq cur"
-        " motorcurr motorcur courant corriente corrente currmotor",
+        " motorcurr motorcur courant corriente corrente currmotor motorcurrents actuali",
     ),
     (Meaning(TORQUE, MOTOR_SIDE, 3, "%"), "curract"),
     (
@@ -134,7 +134,8 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " robotjointtemp motort tm wicklungstemperatur temperaturemotor tmotor tmot tempmotor"
         " servotemperature servotemp actuatortemperature actuatortemp statortemperature statortemp"
         " coiltemperature coiltemp temperatura temperaturamotor temperaturamotore"
-        " temperaturmotor windingtemperature windingtemp twinding",
+        " temperaturmotor windingtemperature windingtemp twinding trotor temprotor rotortemp"
+        " rotortemperature temperaturerotor tcoil",
     ),
     (
         Meaning(HOUSING_TEMPERATURE),

@@ -38,9 +38,11 @@ _JOINT_FIRST = re.compile(
 )
 MEASURED = re.compile(
     r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|msr|present|inst|ist|value"
-    r"|averaged|average|avg|joint[ _]?states?)(?=$|[ _.\-\d])",
+    r"|averaged|average|avg|joint[ _]?states?"
+    r"|current(?=[ _.\-](?:joint[ _.\-])?(?:pos|ang|vel|speed|torque|temp)))(?=$|[ _.\-\d\[(])",
     re.I,
 )
+"""Words that only say that a value was measured; ``current`` before what is no current."""
 WORD_ENDS = re.compile(r"(?<=[a-z])(?=[A-Z])")
 """Where a word of a name in camel case ends."""
 _OF_MESSAGE = re.compile(

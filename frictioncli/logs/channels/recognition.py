@@ -22,6 +22,7 @@ from frictioncli.logs.channels.column_name import (
 )
 from frictioncli.logs.channels.named_joints import named_joints
 from frictioncli.logs.channels.translated_names import in_english
+from frictioncli.logs.channels.units import canonical
 
 _JOINT_IN_FILE_NAME = re.compile(
     r"NextGenDrive#(\d{1,2})"
@@ -30,7 +31,7 @@ _JOINT_IN_FILE_NAME = re.compile(
 )
 _AMPERE = re.compile(r"^(?P<name>.+?)(?:[_ ]in)?[_ /,]A(?:mps?)?$", re.I)
 _NUMBERED_CURRENT = re.compile(r"^[iI][_ ]?(\d{1,2})$")
-_CLOCK = re.compile(r"(?:^|[_ .])(?:time|timestamp|stamp|zeit)$", re.I)
+_CLOCK = re.compile(r"(?:^|[_ .])(?:time|timestamp|stamp|ts|zeit)$", re.I)
 _DURATION = re.compile(
     r"cycle|step|delta|diff|delay|dead|settling|exec|comp|solv|process|latency|sampl|period"
     r"|duration|trip|remaining|zyklus",
@@ -144,10 +145,15 @@ def _recognised_channels(
 
 
 def _with_symbol(found: Sequence[LogChannel]) -> list[LogChannel]:
-    """Return the channels where ``T`` beside another time and a torque is the temperature."""
+    """Return the channels where ``T`` beside another time is none.
+
+    It is the temperature where there is a torque and no other temperature.
+    """
     quantities = [channel.quantity for channel in found]
-    if quantities.count(TIME) < 2 or TORQUE not in quantities or MOTOR_TEMPERATURE in quantities:
+    if quantities.count(TIME) < 2:
         return list(found)
+    if TORQUE not in quantities or MOTOR_TEMPERATURE in quantities:
+        return [channel for channel in found if channel.name.strip() != "T"]
     meaning = MEANINGS["temperature"]
     return [
         replace(channel, meaning=meaning) if channel.name.strip() == "T" else channel
@@ -206,6 +212,8 @@ def _clocks(columns: Sequence[str]) -> list[LogChannel]:
         if not unit and (parts := _CLOCK_WITH_UNIT.match(name)):
             name, unit = parts["name"], parts["unit"]
         words = WORD_ENDS.sub(" ", name)
+        if unit and canonical(unit, TIME) is None:
+            continue
         if _CLOCK.search(words) and not _DURATION.search(words):
             found.append(LogChannel(index, column, Meaning(TIME, rank=2), None, unit, "time"))
     return found
