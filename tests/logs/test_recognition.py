@@ -65,6 +65,12 @@ from .logs import back_and_forth, kuka_columns, write
         ("current_position_counts", None, None, None),
         ("current_2", "torque", 2, "motor"),
         ("current_limit", None, None, None),
+        ("Motortemperatur Achse 1 [°C]", "motor_temperature", 1, "joint"),
+        ("Motor Torque Axis 2 [%]", "torque", 2, ""),
+        ("pos_joint_3", "position", 3, "joint"),
+        ("Torque (Axis 3)", "torque", 3, "joint"),
+        ("mechPos", "position", None, "joint"),
+        ("tor(Nm)", "torque", None, "joint"),
         ("actuator2.position", "position", 2, "joint"),
         ("field.effort1", "torque", 1, "joint"),
         ("cur (A)", "torque", None, "motor"),
@@ -266,6 +272,27 @@ def test_names_in_chinese_and_japanese(column, quantity, joint):
 def test_a_clock_is_known_by_its_last_word_where_there_is_no_other_time(columns, clock):
     times = [c.name for c in recognise_channels(columns) if c.quantity == "time"]
     assert times == ([] if clock is None else [clock])
+
+
+QUATERNION = ["q0", "q1", "q2", "q3"]
+FOUR = [f"q{i}" for i in range(1, 5)]
+
+
+@pytest.mark.parametrize(
+    ("columns", "positions"),
+    [
+        (["t", *QUATERNION, "motor_position", "torque"], ["motor_position"]),
+        (["t", *FOUR, "joint1_pos", "joint2_pos", "tau1", "tau2"], ["joint1_pos", "joint2_pos"]),
+        # an arm of four joints, beside a gripper or its motors
+        (["t", *FOUR, *(f"tau{i}" for i in range(1, 5)), "position"], [*FOUR, "position"]),
+        (["t", *FOUR, *(f"motor_pos_{i}" for i in range(1, 5)), "tau1"], None),
+        (["t", *FOUR, "tau1"], FOUR),
+        (["t", "q1", "q2", "q3", "position", "tau"], ["q1", "q2", "q3", "position"]),
+    ],
+)
+def test_a_quaternion_beside_positions_is_no_joint(columns, positions):
+    found = [one.name for one in recognise_channels(columns) if one.quantity == "position"]
+    assert found == (columns[1:-1] if positions is None else positions)
 
 
 @pytest.mark.parametrize(

@@ -83,7 +83,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " axisangle axisposition achsposition jointpos qact observationstate observationqpos"
         " posestimate positionachse theta linkposition linkangle outputposition outputangle"
         " posicion posicin posizione linkpos outputpos apos"
-        " stateposition statepos angles jointangles",
+        " stateposition statepos angles jointangles mechpos",
     ),
     (
         Meaning(POSITION, MOTOR_SIDE),
@@ -97,7 +97,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " axisspeed jointspeed actvelo actvel observationvelocity observationqvel velestimate"
         " vitesse omega geschwindigkeitachse thetadot linkvelocity outputvelocity"
         " velocidad velocita velocit linkvel outputvel fspd"
-        " statevelocity statevel",
+        " statevelocity statevel spd mechvel",
     ),
     (Meaning(VELOCITY, unit="rpm"), "rpm"),
     (
@@ -116,7 +116,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " gelenkmoment torqact axistorqact acttorque acttorq observationeffort observationtorque"
         " tauest trq eff couple drehmomentachse jointeffort jointefforts acttrq trqact"
         " linktorque outputtorque coppia taumsr msrtorque currentastorque torquecur torquecurrent"
-        " statetau statetorque stateeffort tq taumeas taumeasured",
+        " statetau statetorque stateeffort tq taumeas taumeasured tor",
     ),
     (Meaning(TORQUE, JOINT_SIDE, 2), "geartorqact geartorque geartorq getriebemoment"),
     (
@@ -124,7 +124,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         "iststrom strom current currents motorcurrent motorstrom actualcurrent actualjointcurrent"
         " robotactualjointcurrent currentact actcurrent curr jointcurrent macur observationcurrent"
         " iqmeasured currentmotor iq iqa iqact iqactual qcurrent currentq qaxiscurrent motoriq cur"
-        " motorcurr motorcur courant corriente corrente currmotor motorcurrents actuali",
+        " motorcurr motorcur courant corriente corrente currmotor motorcurrents actuali iqf",
     ),
     (Meaning(TORQUE, MOTOR_SIDE, 3, "%"), "curract"),
     (

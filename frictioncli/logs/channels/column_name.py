@@ -28,7 +28,8 @@ _UNIT_OF_QUANTITY = re.compile(
     re.I,
 )
 _JOINT_LAST = re.compile(
-    r"^(?P<name>.*?)(?:(?<=[a-z])[AJ]|(?<![ _.\-(\[])[ _.\-(\[]+[AaJj]?[ _]?|)"
+    r"^(?P<name>.*?)(?:(?<=[a-z])[AJ]|(?<![ _.\-(\[])[ _.\-(\[]+"
+    r"(?:[AaJj](?:xis|chse|oint)?|[Gg]elenk)?[ _]?|)"
     r"(?P<joint>\d{1,2})[)\]]?$"
 )
 _JOINT_FIRST = re.compile(
@@ -37,7 +38,7 @@ _JOINT_FIRST = re.compile(
     re.I,
 )
 MEASURED = re.compile(
-    r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fb|actual|act|measured|meas|msr|present|inst|ist|value"
+    r"(?:^|(?<=[ _.\-]))(?:feedback|fbk|fdb|fb|actual|act|measured|meas|msr|present|inst|ist|value"
     r"|averaged|average|avg|joint[ _]?states?"
     r"|current(?=[ _.\-](?:joint[ _.\-])?(?:pos|ang|vel|speed|torque|temp)))(?=$|[ _.\-\d\[(])",
     re.I,
@@ -56,7 +57,7 @@ _DESIRED = re.compile(r"(?<![a-z])(?:d?q|tau(?:_j)?|theta)_d(?![a-z])", re.I)
 """Desired values, as Franka names them; ``qd`` is a velocity."""
 _PER = re.compile(r"[_ ]per[_ ]|_(?=s(?:ec)?$)", re.I)
 _NO_KEY = re.compile(r"[^a-z0-9]")
-_JOINT_IN_BRACKETS = re.compile(r"^[AaJj]?\d{1,2}$")
+_JOINT_IN_BRACKETS = re.compile(r"^(?:[AaJj](?:xis|chse|oint)?|[Gg]elenk)?[ _.]?\d{1,2}$")
 _JOINT_ALONE = re.compile(r"^(?:joint|axis|achse|gelenk|motor|[aj])[ _]?\d{1,2}$", re.I)
 _PARTS = re.compile(r"[/.]")
 

@@ -39,6 +39,7 @@ _DURATION = re.compile(
 )
 """Words in front of ``time`` in the name of a duration, not of a clock."""
 _CLOCK_WITH_UNIT = re.compile(r"^(?P<name>.+)_(?P<unit>s|secs?|seconds|[mun]s|msec|usec|nsec)$")
+_OF_QUATERNION = ({0, 1, 2, 3}, {1, 2, 3, 4})
 _BARE_JOINT = re.compile(r"^(?:joint|axis|achse|gelenk)[ _.]?(\d{1,2})$", re.I)
 _ID_COLUMN = re.compile(r"^(?:motor|joint|axis|achse|servo)[ _.]?(?:id|no|nr|number|nummer)$", re.I)
 
@@ -122,7 +123,7 @@ def _recognised_channels(
         if channel is not None:
             is_merged = first_merged is not None and index >= first_merged
             found.append(replace(channel, is_merged=is_merged))
-    found = _with_symbol(found)
+    found = _without_quaternion(_with_symbol(found))
     if not any(channel.quantity == TORQUE for channel in found):
         found += _currents_in_ampere(columns) or _numbered_currents(columns, found)
     if not any(channel.quantity == TORQUE for channel in found):
@@ -159,6 +160,20 @@ def _with_symbol(found: Sequence[LogChannel]) -> list[LogChannel]:
         replace(channel, meaning=meaning) if channel.name.strip() == "T" else channel
         for channel in found
     ]
+
+
+def _without_quaternion(found: Sequence[LogChannel]) -> list[LogChannel]:
+    """Return the channels without ``q0`` to ``q3`` that are no joints: an orientation has them.
+
+    They are beside other positions, and not each of them has a velocity, torque or other position.
+    """
+    four = [one for one in found if one.quantity == POSITION and one.family == "q"]
+    rest = [one for one in found if one not in four]
+    numbers = {channel.joint for channel in four}
+    has_others = any(channel.quantity == POSITION for channel in rest)
+    if numbers not in _OF_QUATERNION or numbers <= {one.joint for one in rest} or not has_others:
+        return list(found)
+    return rest
 
 
 def _currents_in_ampere(columns: Sequence[str]) -> list[LogChannel]:
