@@ -366,3 +366,20 @@ def test_the_range_of_positions_is_found_once_for_all_joints(tmp_path, monkeypat
     ingest([write(tmp_path / "log.csv", columns)], tmp_path / "work")
     assert len(looked) == 1
     np.testing.assert_allclose(samples(tmp_path / "work")["position"], np.tile(position, 7))
+
+
+@pytest.mark.parametrize("per_degree", [np.pi / 180, 1.0])
+@pytest.mark.parametrize("has_velocity", [False, True])
+def test_motor_and_joint_without_units_have_the_same_one(tmp_path, per_degree, has_velocity):
+    """The gear ratio converts the motor's torque: it may not be 57 times too small."""
+    time, position, velocity, torque = back_and_forth()
+    columns = {"time": time, "motor_position": 101 * per_degree * position + 3.0}
+    if has_velocity:
+        columns["motor_velocity"] = 101 * per_degree * velocity
+    columns |= {"motor_torque": torque / 101, "joint_position": per_degree * position}
+    ingest([write(tmp_path / "log.csv", columns, digits=9)], tmp_path / "work")
+    found = samples(tmp_path / "work")
+    np.testing.assert_allclose(found["torque"], torque, rtol=1e-3)
+    np.testing.assert_allclose(found["position"], position, atol=1e-5)
+    moves = np.abs(velocity) == np.max(velocity)
+    np.testing.assert_allclose(found["velocity"][moves], velocity[moves], rtol=0.02)

@@ -96,7 +96,9 @@ def joint_motion(
         other_forced = {name: unit for name, unit in forced.items() if name != names.POSITION}
         other = replace(channels, position=other_position, velocity=None if same_side else velocity)
         axis = _Axis(other, "")
-        other_units, _, _ = _axis_units(axis, survey, other_forced, remarks)
+        of_motor = other_position.meaning.side == names.MOTOR_SIDE and not other_position.unit
+        like = found.position if of_motor else None
+        other_units, _, _ = _axis_units(axis, survey, other_forced, remarks, like)
         other_unit = other_units.position
         if not same_side:
             found = replace(other_units, position=found.position)
@@ -108,23 +110,31 @@ def joint_motion(
 
 
 def _axis_units(
-    axis: _Axis, survey: Survey, forced: Mapping[str, str], remarks: Remarks
+    axis: _Axis,
+    survey: Survey,
+    forced: Mapping[str, str],
+    remarks: Remarks,
+    like: str | None = None,
 ) -> tuple[MotionUnits, float, str]:
     """Return units, the largest absolute raw position, and why the position's unit is open.
 
-    The reason is "" where the unit is known.
+    The reason is "" where the unit is known. ``like`` is the position's unit where nothing tells.
     """
     position = axis.position
     family = survey.family(position)
     largest, span = surveyed_motion.position_range(survey, axis.time, family)
     on_motor = position.meaning.side == names.MOTOR_SIDE
-    usual = position_units.usual_position_unit(largest=largest, span=span, on_motor=on_motor)
+    usual = like or position_units.usual_position_unit(
+        largest=largest, span=span, on_motor=on_motor
+    )
     possible, why = position_units.possible_position_units(
         largest=largest,
         span=span,
         on_motor=on_motor,
         paths_per_angle=surveyed_motion.tool_paths_per_angle(survey, family),
     )
+    if like is not None:
+        why = why or "taken like the joint's position"
     if position.name == names.INTEGRATED:  # in deg by construction, however far it goes
         possible, why = frozenset({"deg"}), ""
     allowed = possible
