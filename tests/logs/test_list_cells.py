@@ -16,6 +16,13 @@ TIME, POSITION, VELOCITY, TORQUE = back_and_forth()
 JOINTS = ["pan", "lift", "elbow"]
 
 
+class Blanks(list):
+    """A list with blanks instead of commas, as NumPy writes its arrays."""
+
+    def __repr__(self):
+        return f"[{' '.join(f'{value: .17g}' for value in self)}]"
+
+
 def cells(kind):
     """Return the lists of each row as Python itself writes them."""
     for row in zip(TIME, POSITION, VELOCITY, TORQUE, strict=True):
@@ -33,7 +40,7 @@ def written(path, kind, delimiter=",", quote='"'):
     return path
 
 
-@pytest.mark.parametrize("kind", [list, tuple, lambda values: array("d", values)])
+@pytest.mark.parametrize("kind", [list, tuple, lambda values: array("d", values), Blanks])
 @pytest.mark.parametrize(("delimiter", "quote"), [(",", '"'), (";", '"'), (";", ""), ("\t", "")])
 def test_each_member_is_a_column(tmp_path, kind, delimiter, quote):
     path = written(tmp_path / "log.csv", kind, delimiter, quote)
@@ -46,6 +53,20 @@ def test_each_member_is_a_column(tmp_path, kind, delimiter, quote):
         np.testing.assert_allclose(found["position"], POSITION * part)
         np.testing.assert_allclose(found["torque"], TORQUE * part)
     assert any("number 1 is pan, 2 is lift, 3 is elbow" in note for note in summary.notes)
+
+
+def test_a_date_beside_lists_keeps_its_blank(tmp_path):
+    rows = [
+        f"2024-03-14 11:58:{10 + t:06.3f},[{p} 0.5],[{u} 0.0]"
+        for t, p, u in zip(TIME, POSITION, TORQUE, strict=True)
+    ]
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join(["time,position [deg],torque [Nm]", *rows, ""]))
+    summary = ingest([path], tmp_path / "work", IngestSettings(joints=(1,)))
+    assert summary.rows_kept == len(TIME)
+    samples = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    np.testing.assert_allclose(samples["time"], TIME, atol=1e-3)
+    np.testing.assert_allclose(samples["position"], POSITION)
 
 
 def test_names_of_the_members(tmp_path):

@@ -1,7 +1,8 @@
 """Text logs whose cells hold lists, as scripts write the messages of ROS.
 
-A cell such as ``[0.1, 0.2]``, ``(0.1, 0.2)`` or ``array('d', [0.1, 0.2])`` becomes one column for
-each of its members. Rows with another number of members are damaged.
+A cell such as ``[0.1, 0.2]``, ``(0.1, 0.2)``, ``[ 0.1  0.2]`` as NumPy writes it, or ``array('d',
+[0.1, 0.2])`` becomes one column for each of its members. Rows with another number of members are
+damaged.
 """
 
 import re
@@ -19,6 +20,8 @@ from frictioncli.logs.log_source import CsvHints, RawBatch, Refusal, SequentialS
 
 _LIST = re.compile(r"\s*+(?:array\('\w',\s*+)?[\[(]([^\[\]()]*+)[\])]\)?\s*+")
 _TYPE = re.compile(rb"array\('\w', ?")
+_BLANKS = re.compile(rb"(?<=[\d.]) +(?=[-+.\d][^\[\]\n]*\])")
+"""Blanks between the numbers of a list without commas; those of a date stand in no list."""
 _MARKS = b"[]()\"'"
 _DELIMITERS = (";", "\t", ",")
 _INSPECTED_LINES, _SHOWN = 20, 40
@@ -54,7 +57,7 @@ def read_list_cells(path: Path, head: bytes, hints: CsvHints) -> "ListCells | Re
     flat += [_flat(line.encode(), delimiter.encode()).decode() for line in lines[above + 1 :]]
     dialect = detect([""] * above + flat, replace(hints, delimiter=delimiter))
     if isinstance(dialect, Refusal):
-        return dialect
+        return None if hints.delimiter is None else dialect
     example = next(row for row in rows if len(row) == len(names) and _form(row) == form)
     return ListCells(DelimitedText(path, encoding, dialect, b""), _texts_in(example))
 
@@ -112,7 +115,13 @@ class ListCells(SequentialSource):
 def _form(row: Sequence[str]) -> tuple[int | None, ...]:
     """Return for each cell of a row the number of members of its list; None where it is none."""
     lists = (_LIST.fullmatch(cell) for cell in row)
-    return tuple(None if found is None else found[1].count(",") + 1 for found in lists)
+    return tuple(None if found is None else _members(found[0]) for found in lists)
+
+
+def _members(cell: str) -> int:
+    """Return how many members a list in a cell has."""
+    found = _LIST.fullmatch(_BLANKS.sub(b",", cell.encode()).decode())
+    return 0 if found is None else found[1].count(",") + 1
 
 
 def _refuse_unequal(names: Sequence[str], forms: Counter[tuple[int | None, ...]]) -> Refusal | None:
@@ -137,7 +146,7 @@ def _flat_names(names: Sequence[str], form: Sequence[int | None]) -> Iterator[st
 
 def _flat(content: bytes, delimiter: bytes) -> bytes:
     """Return rows with the members of lists as fields of their own."""
-    plain = _TYPE.sub(b"", content).translate(None, _MARKS).replace(b", ", b",")
+    plain = _BLANKS.sub(b",", _TYPE.sub(b"", content)).translate(None, _MARKS).replace(b", ", b",")
     return plain if delimiter == b"," else plain.replace(b",", delimiter)
 
 
