@@ -168,3 +168,17 @@ def test_a_scaled_log_comes_from_all_files_of_its_trace():
     files = (Path("trace_KRCIpo.csv"), Path("trace_NextGenDrive#3.csv"))
     trace = SimpleNamespace(path=files[0], files=files, columns=("t", "q"), form="2 files")
     assert ScaledLog(trace, ((1.0, 0.0), (2.0, 0.0))).files == files
+
+
+@pytest.mark.parametrize("has_velocity", [False, True])
+def test_estimates_of_an_odrive_are_in_turns(has_velocity, tmp_path):
+    """In rad they would be 6.3 times too small; no header of these logs has a unit."""
+    time, position, velocity, torque = back_and_forth()
+    columns = {"time": time, "pos_estimate": position / 360}
+    columns |= {"vel_estimate": velocity / 360} if has_velocity else {}
+    log = write(tmp_path / "log.csv", {**columns, "iq_measured": torque}, digits=12)
+    ingest([log], tmp_path / "work")
+    found = tables.read(tmp_path / "work" / "samples.parquet", schemas.SAMPLES)
+    np.testing.assert_allclose(found["position"], position, atol=1e-6)
+    moves = np.abs(velocity) == np.max(velocity)
+    np.testing.assert_allclose(found["velocity"][moves], velocity[moves], rtol=0.02)

@@ -81,7 +81,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " actualposition actualjointposition positionact actpos posact q actualq aipos mp stateq"
         " robotactualjointpositions angle jointangle winkel achswinkel gelenkwinkel istwinkel"
         " axisangle axisposition achsposition jointpos qact observationstate observationqpos"
-        " posestimate positionachse theta linkposition linkangle outputposition outputangle"
+        " positionachse theta linkposition linkangle outputposition outputangle"
         " posicion posicin posizione linkpos outputpos apos"
         " stateposition statepos angles jointangles mechpos",
     ),
@@ -94,11 +94,13 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         "axisvelact axisvel velocity velocities vel jointvelocity jointvelocities actualvelocity"
         " velocityact velact qd dq qdot actualqd statedq robotactualjointvelocities speed"
         " geschwindigkeit achsgeschwindigkeit gelenkgeschwindigkeit axisvelocity jointvel"
-        " axisspeed jointspeed actvelo actvel observationvelocity observationqvel velestimate"
+        " axisspeed jointspeed actvelo actvel observationvelocity observationqvel"
         " vitesse omega geschwindigkeitachse thetadot linkvelocity outputvelocity"
         " velocidad velocita velocit linkvel outputvel fspd"
         " statevelocity statevel spd mechvel",
     ),
+    (Meaning(POSITION, unit="turn"), "posestimate"),
+    (Meaning(VELOCITY, unit="turn/s"), "velestimate"),
     (Meaning(VELOCITY, unit="rpm"), "rpm"),
     (
         Meaning(VELOCITY, MOTOR_SIDE),

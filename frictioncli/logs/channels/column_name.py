@@ -47,8 +47,8 @@ MEASURED = re.compile(
 WORD_ENDS = re.compile(r"(?<=[a-z])(?=[A-Z])")
 """Where a word of a name in camel case ends."""
 _OF_MESSAGE = re.compile(
-    r"^(?:field|msg|data|feedback|robot|arm|measured|actual|sensors?"
-    r"|(?:axis\d\.)?(?:encoder|controller))\.",
+    r"^(?P<axis>axis\d\.)?(?:field|msg|data|feedback|robot|arm|measured|actual|sensors?|encoder"
+    r"|controller|motor\.(?:current_control|foc)|motor_thermistor)\.",
     re.I,
 )
 """What ``rostopic echo -p``, objects of JSON and others put before each value of a message."""
@@ -189,7 +189,7 @@ def _spellings(name: str) -> list[str]:
     Of ROS topics such as ``/joints/joint_2/position`` these alone, of ``arm.joint_2.position`` as
     well. Then the same without words that only say that a value was measured.
     """
-    name = _OF_MESSAGE.sub("", name)
+    name = _OF_MESSAGE.sub(r"\g<axis>", name)
     texts, path = [name], _PARTS.split(name)
     if COMMAND.search(name):
         return texts

@@ -138,7 +138,7 @@ def _axis_units(
     if position.name == names.INTEGRATED:  # in deg by construction, however far it goes
         possible, why = frozenset({"deg"}), ""
     allowed = possible
-    declared_position = forced.get(names.POSITION) or units.canonical(position.unit, names.POSITION)
+    declared_position = forced.get(names.POSITION) or _written_unit(position, names.POSITION)
     if declared_position in units.ONLY_WRITTEN:
         allowed, why = frozenset({declared_position}), ""
     elif names.POSITION in forced:
@@ -153,7 +153,7 @@ def _axis_units(
     declared_velocity = forced.get(names.VELOCITY)
     ratio = None
     if axis.velocity is not None:
-        written = _written_unit(axis.velocity)
+        written = _written_unit(axis.velocity, names.VELOCITY)
         declared_velocity = declared_velocity or written
         ratio = unit_evidence.motion_ratio(
             surveyed_motion.motions(survey, axis.time, position, axis.velocity)
@@ -257,7 +257,12 @@ def _remark_position(
     remarks: Remarks,
 ) -> None:
     position = axis.position
-    written = units.canonical(position.unit, names.POSITION)
+    written = _written_unit(position, names.POSITION)
+    if written and not position.unit and names.POSITION not in forced:
+        remarks.notes.append(
+            f"{position.name} has no unit: read as {found.position}, as usual with this name"
+            f"{axis.hint.format('deg')}"
+        )
     if names.POSITION in forced or written == found.position:
         return
     if position.unit and written is None and (found.position == "deg" or not found.evidence):
@@ -267,7 +272,7 @@ def _remark_position(
         )
         return
     tells = axis.velocity is not None and (
-        _written_unit(axis.velocity) or found.velocity not in (None, "deg/s")
+        _written_unit(axis.velocity, names.VELOCITY) or found.velocity not in (None, "deg/s")
     )
     if written is None and not tells and position.name != names.INTEGRATED:
         remarks.warnings += warnings_of_scale(axis.channels, survey, found.position)
@@ -281,14 +286,15 @@ def _remark_position(
     )
 
 
-def _written_unit(velocity: LogChannel) -> str | None:
-    return units.canonical(velocity.unit or velocity.meaning.unit, names.VELOCITY)
+def _written_unit(channel: LogChannel, quantity: str) -> str | None:
+    """Return the unit of the header, or the one that always goes with the name."""
+    return units.canonical(channel.unit or channel.meaning.unit, quantity)
 
 
 def _remark_velocity(
     velocity: LogChannel, found: MotionUnits, forced: Mapping[str, str], remarks: Remarks
 ) -> None:
-    written = _written_unit(velocity)
+    written = _written_unit(velocity, names.VELOCITY)
     if velocity.unit and written is None and names.VELOCITY not in forced and not found.evidence:
         remarks.warnings.append(
             f"{velocity.name}: unit {velocity.unit!r} is not known, taken as {found.velocity};"
