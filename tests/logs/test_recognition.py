@@ -281,6 +281,7 @@ def test_a_clock_is_known_by_its_last_word_where_there_is_no_other_time(columns,
 
 QUATERNION = ["q0", "q1", "q2", "q3"]
 FOUR = [f"q{i}" for i in range(1, 5)]
+DOF = [f"dof_pos_{i}" for i in range(12)]
 
 
 @pytest.mark.parametrize(
@@ -288,6 +289,7 @@ FOUR = [f"q{i}" for i in range(1, 5)]
     [
         (["t", *QUATERNION, "motor_position", "torque"], ["motor_position"]),
         (["t", *FOUR, "joint1_pos", "joint2_pos", "tau1", "tau2"], ["joint1_pos", "joint2_pos"]),
+        (["t", *QUATERNION, *DOF, *(f"dof_torque_{i}" for i in range(12))], DOF),
         # an arm of four joints, beside a gripper or its motors
         (["t", *FOUR, *(f"tau{i}" for i in range(1, 5)), "position"], [*FOUR, "position"]),
         (["t", *FOUR, *(f"motor_pos_{i}" for i in range(1, 5)), "tau1"], None),

@@ -83,7 +83,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " axisangle axisposition achsposition jointpos qact observationstate observationqpos"
         " positionachse theta linkposition linkangle outputposition outputangle"
         " posicion posicin posizione linkpos outputpos apos"
-        " stateposition statepos angles jointangles mechpos",
+        " stateposition statepos angles jointangles mechpos dofpos",
     ),
     (
         Meaning(POSITION, MOTOR_SIDE),
@@ -97,7 +97,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " axisspeed jointspeed actvelo actvel observationvelocity observationqvel"
         " vitesse omega geschwindigkeitachse thetadot linkvelocity outputvelocity"
         " velocidad velocita velocit linkvel outputvel fspd"
-        " statevelocity statevel spd mechvel",
+        " statevelocity statevel spd mechvel dofvel",
     ),
     (Meaning(POSITION, unit="turn"), "posestimate"),
     (Meaning(VELOCITY, unit="turn/s"), "velestimate"),
@@ -118,7 +118,7 @@ _ALIASES: tuple[tuple[Meaning, str], ...] = (
         " gelenkmoment torqact axistorqact acttorque acttorq observationeffort observationtorque"
         " tauest trq eff couple drehmomentachse jointeffort jointefforts acttrq trqact"
         " linktorque outputtorque coppia taumsr msrtorque currentastorque torquecur torquecurrent"
-        " statetau statetorque stateeffort tq taumeas taumeasured tor",
+        " statetau statetorque stateeffort tq taumeas taumeasured tor doftorque",
     ),
     (Meaning(TORQUE, JOINT_SIDE, 2), "geartorqact geartorque geartorq getriebemoment"),
     (

@@ -165,15 +165,16 @@ def _with_symbol(found: Sequence[LogChannel]) -> list[LogChannel]:
 def _without_quaternion(found: Sequence[LogChannel]) -> list[LogChannel]:
     """Return the channels without ``q0`` to ``q3`` that are no joints: an orientation has them.
 
-    They are beside other positions, and not each of them has a velocity, torque or other position.
+    They are beside other positions: of more or fewer joints, or not each of them has a torque.
     """
     four = [one for one in found if one.quantity == POSITION and one.family == "q"]
     rest = [one for one in found if one not in four]
     numbers = {channel.joint for channel in four}
-    has_others = any(channel.quantity == POSITION for channel in rest)
-    if numbers not in _OF_QUATERNION or numbers <= {one.joint for one in rest} or not has_others:
+    others = {channel.joint for channel in rest if channel.quantity == POSITION}
+    if numbers not in _OF_QUATERNION or not others:
         return list(found)
-    return rest
+    are_joints = numbers <= {channel.joint for channel in rest}
+    return list(found) if are_joints and (len(others) == 1 or others == numbers) else rest
 
 
 def _currents_in_ampere(columns: Sequence[str]) -> list[LogChannel]:
