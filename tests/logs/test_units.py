@@ -129,6 +129,17 @@ def test_a_tool_in_metres_or_millimetres(tmp_path, lever, per_metre, per_degree)
     np.testing.assert_allclose(samples(tmp_path / "work")["position"], position, atol=1e-5)
 
 
+@pytest.mark.parametrize("lever", [0.0005, 0.005, 0.02, 0.04])  # [m]
+def test_a_tool_near_the_axis_of_a_joint_in_rad(tmp_path, lever):
+    """The flange of a wrist turns about its own axis, and a gripper is some mm off."""
+    time, position, _, torque = back_and_forth()
+    angle = np.radians(position)
+    columns = {"time": time, "q6": angle, "tau6": torque, "x": 0.4 + lever * np.cos(angle)}
+    columns |= {"y": 0.1 + lever * np.sin(angle), "z": 0.3 + 0 * time}
+    ingest([write(tmp_path / "log.csv", columns, digits=9)], tmp_path / "work")
+    np.testing.assert_allclose(samples(tmp_path / "work")["position"], position, atol=1e-5)
+
+
 def test_radians_under_a_degree_header(tmp_path):
     columns = kuka_columns()
     columns["AxisPos_Act2[°]"] = np.radians(columns["AxisPos_Act2[°]"])

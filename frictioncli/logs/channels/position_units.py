@@ -126,7 +126,9 @@ def possible_position_units(
         for unit, arm in arms.items()
         if _LEVER_ARM[0] <= path * arm <= _LEVER_ARM[1]
     }
-    if len(fitting) == 1:
+    # a tool near the axis of a joint in rad moves as little per angle as one far off does in deg
+    is_told = "rad" in fitting or len(paths_per_angle) == 1
+    if len(fitting) == 1 and is_told:
         ((unit, lever_arm),) = fitting.items()
         return frozenset({unit}), f"the tool then moves on a lever of {lever_arm:.2g} m"
     if span > _LEAST_SPAN:
