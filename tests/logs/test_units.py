@@ -107,10 +107,10 @@ def test_lever_arm_of_half_a_metre():
         largest=1, span=2, on_motor=False, paths_per_angle=(500,)
     )
     assert in_rad[0] == {"rad"}
-    in_degrees = position_units.possible_position_units(
+    in_degrees_or_near_the_axis = position_units.possible_position_units(
         largest=5, span=4, on_motor=False, paths_per_angle=(500 * np.pi / 180,)
     )
-    assert in_degrees[0] == {"deg"}
+    assert in_degrees_or_near_the_axis[0] == {"deg", "rad"}
 
 
 @pytest.mark.parametrize("lever", [0.25, 0.5, 1.3])  # [m]
@@ -138,6 +138,17 @@ def test_a_tool_near_the_axis_of_a_joint_in_rad(tmp_path, lever):
     columns |= {"y": 0.1 + lever * np.sin(angle), "z": 0.3 + 0 * time}
     ingest([write(tmp_path / "log.csv", columns, digits=9)], tmp_path / "work")
     np.testing.assert_allclose(samples(tmp_path / "work")["position"], position, atol=1e-5)
+
+
+def test_a_header_in_degrees_is_doubted_where_the_tool_may_be_near_the_axis(tmp_path):
+    """KUKA's traces may hold rad under [°]; this flange is 5 mm off the axis of the wrist."""
+    time, position, _, torque = back_and_forth()
+    angle = np.radians(position)
+    columns = {"Zeit[sec]": time, "AxisPos_Act6[°]": angle, "GearTorq_Act6[Nm]": torque}
+    columns |= {"X_Act[mm]": 400 + 5 * np.cos(angle), "Y_Act[mm]": 100 + 5 * np.sin(angle)}
+    log = write(tmp_path / "log.csv", {**columns, "Z_Act[mm]": 300 + 0 * time}, digits=9)
+    with pytest.raises(LogError, match="--position-unit"):
+        ingest([log], tmp_path / "work")
 
 
 def test_radians_under_a_degree_header(tmp_path):

@@ -119,21 +119,19 @@ def possible_position_units(
         return frozenset({"deg", "rad"}), ""
     if largest > RADIAN_LIMIT:
         return frozenset({"deg"}), f"values reach ±{largest:.4g}, beyond a turn in rad"
-    arms = {"rad": 1e-3, "deg": 1e-3 * _DEGREES_PER_RADIAN}  # [m/mm]
-    fitting = {
-        unit: path * arm
-        for path in paths_per_angle
-        for unit, arm in arms.items()
-        if _LEVER_ARM[0] <= path * arm <= _LEVER_ARM[1]
-    }
     # a tool near the axis of a joint in rad moves as little per angle as one far off does in deg
-    is_told = "rad" in fitting or len(paths_per_angle) == 1
-    if len(fitting) == 1 and is_told:
-        ((unit, lever_arm),) = fitting.items()
-        return frozenset({unit}), f"the tool then moves on a lever of {lever_arm:.2g} m"
+    levers = [path / 1000 for path in paths_per_angle if _may_be_lever(path / 1000)]
+    if levers and not any(
+        _may_be_lever(path / 1000 * _DEGREES_PER_RADIAN) for path in paths_per_angle
+    ):
+        return frozenset({"rad"}), f"the tool then moves on a lever of {levers[0]:.2g} m"
     if span > _LEAST_SPAN:
         return frozenset({"deg", "rad"}), f"values span {span:.2g} and stay within ±6.3"
     return frozenset({"deg", "rad"}), "it does not move"
+
+
+def _may_be_lever(arm: float) -> bool:
+    return _LEVER_ARM[0] <= arm <= _LEVER_ARM[1]
 
 
 def usual_position_unit(*, largest: float, span: float, on_motor: bool) -> str:
