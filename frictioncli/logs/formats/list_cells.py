@@ -20,8 +20,9 @@ from frictioncli.logs.log_source import CsvHints, RawBatch, Refusal, SequentialS
 
 _LIST = re.compile(r"\s*+(?:array\('\w',\s*+)?[\[(]([^\[\]()]*+)[\])]\)?\s*+")
 _TYPE = re.compile(rb"array\('\w', ?")
-_BLANKS = re.compile(rb"(?<=[\d.]) +(?=[-+.\d][^\[\]\n]*\])")
-"""Blanks between the numbers of a list without commas; those of a date stand in no list."""
+_WITHIN = re.compile(rb"\[[^\[\]\n]*+\]")
+_BLANKS = re.compile(rb"(?<=[\d.]) ++(?=[-+.\d])")
+"""Blanks between numbers, which separate the members of a list without commas."""
 _MARKS = b"[]()\"'"
 _DELIMITERS = (";", "\t", ",")
 _INSPECTED_LINES, _SHOWN = 20, 40
@@ -120,8 +121,13 @@ def _form(row: Sequence[str]) -> tuple[int | None, ...]:
 
 def _members(cell: str) -> int:
     """Return how many members a list in a cell has."""
-    found = _LIST.fullmatch(_BLANKS.sub(b",", cell.encode()).decode())
+    found = _LIST.fullmatch(_with_commas(cell.encode()).decode())
     return 0 if found is None else found[1].count(",") + 1
+
+
+def _with_commas(content: bytes) -> bytes:
+    """Return rows whose lists have commas between the numbers."""
+    return _WITHIN.sub(lambda found: _BLANKS.sub(b",", found[0]), content)
 
 
 def _refuse_unequal(names: Sequence[str], forms: Counter[tuple[int | None, ...]]) -> Refusal | None:
@@ -146,7 +152,7 @@ def _flat_names(names: Sequence[str], form: Sequence[int | None]) -> Iterator[st
 
 def _flat(content: bytes, delimiter: bytes) -> bytes:
     """Return rows with the members of lists as fields of their own."""
-    plain = _BLANKS.sub(b",", _TYPE.sub(b"", content)).translate(None, _MARKS).replace(b", ", b",")
+    plain = _with_commas(_TYPE.sub(b"", content)).translate(None, _MARKS).replace(b", ", b",")
     return plain if delimiter == b"," else plain.replace(b",", delimiter)
 
 
