@@ -77,6 +77,19 @@ def test_a_payload_that_is_put_on(torques, after):
     assert (begin, end) == (pytest.approx(moment(torques, there), abs=0.01), 1.0)
 
 
+@pytest.mark.parametrize(
+    ("share", "first"),
+    [(0.025, "torque_scale"), (0.08, "payload_change")],
+)
+def test_a_small_change_in_the_form_of_gravity_is_likelier_one_of_the_scale(torques, share, first):
+    """Friction that stays as it was says little of 2.5 %, and that 8 % are a payload."""
+    load = torques["load_torque"] * np.where(second(torques), 1 + share, 1.0)
+    (cause,), _, _ = found(torques.assign(load_torque=load))
+    assert cause.effects[0] == cause.fit.effect.name == first
+    if first == "torque_scale":
+        assert cause.fit.coefficients == pytest.approx([100 * share], abs=0.3)
+
+
 @pytest.mark.parametrize("after", [-1.0, 3.6])
 def test_a_step_of_friction(torques, after):
     """3 N·m, more than 3 % of the friction."""

@@ -68,7 +68,7 @@ def test_a_step_of_friction_at_that_moment_is_a_part_of_it():
         # a mass elsewhere than that of the arm, whatever friction does
         (0.06, (0.0, 6.0), ("payload_change",)),
         # between both
-        (0.035, (0.06, 0.0), ("payload_change", "torque_scale")),
+        (0.028, (0.06, 0.0), ("payload_change", "torque_scale")),
     ],
 )
 def test_a_payload_leaves_friction_as_it_was(friction, load, expected):
@@ -78,3 +78,19 @@ def test_a_payload_leaves_friction_as_it_was(friction, load, expected):
     assert payload.fit.effect.name == "payload_change"
     assert found.step is before
     assert sum(payload.probabilities.values()) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("load", "expected"),
+    [
+        # friction tells nothing of half a per cent, which is no payload that anybody puts on
+        ((0.006, 0.0), {"torque_scale", "payload_change"}),
+        # as large, across gravity
+        ((0.0, 0.6), {"payload_change"}),
+    ],
+)
+def test_a_small_change_in_the_form_of_gravity_may_be_one_of_the_scale(load, expected):
+    found, _ = judged(0.0, load)
+    (change,) = found.causes
+    assert set(change.effects) == expected
+    assert (change.effects[0] == "torque_scale") == ("torque_scale" in expected)

@@ -123,13 +123,16 @@ def _at_temperatures_of(seen: Problem, new: Problem) -> Problem | None:
 def _located(lacking: Structure, seen: Problem, predicted: Extension) -> Structure:
     """Return what the model lacks on a new run; not of that run alone if the others have it, too.
 
-    There it may have been discrepancy. Along time a run has its own history.
+    There it may have been discrepancy. Along time a run has its own history: what counts is how
+    large it is.
     """
     (axis,) = lacking.axes
-    if axis == "time":
-        return lacking
     misfit = misfits(seen, predicted)[0 if lacking.channel == "friction" else 1]
-    before = size_along(seen, axis, misfit)
+    if axis == "time":
+        means = seen.layout.means(misfit[:, np.newaxis])
+        before = float(np.sqrt(np.mean(np.square(means))))
+    else:
+        before = size_along(seen, axis, misfit)
     return replace(lacking, only_on="") if before > _LESS_BEFORE * lacking.size else lacking
 
 

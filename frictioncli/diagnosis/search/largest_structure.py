@@ -122,8 +122,8 @@ def inadequacy(
         return None
     found = left_structure(problem, beyond, load)
     size, interval, pairs = found.size, found.interval, len(problem.layout.time)
-    along = found.axis
-    if found.channel == "friction" and along in _AXES:
+    along, channel = found.axis, found.channel
+    if channel == "friction" and along in _AXES:
         # along that axis, all of it is lacking
         size = size_along(problem, along, friction)
         interval = (interval[0] * size / found.size, interval[1] * size / found.size)
@@ -131,12 +131,14 @@ def inadequacy(
         along = "time"
     elif size**2 < LEAST_PART * rest:
         along, size, interval = "time", float(np.sqrt(rest)), (0.0, np.inf)
+        of_load = 0.0 if problem.has_load_channel else float(np.mean(np.square(load)))
+        channel = "load" if of_load > square / 2 else "friction"
     if size <= margin:
         return None
     ratio = square / max(floor, 1e-9) ** 2
     return Structure(
         axes=(along,),
-        channel=found.channel,
+        channel=channel,
         # as if the pairs were all that is independent
         p_value=chi2_tail(pairs * ratio, pairs),
         statistic=pairs * (ratio - 1.0),

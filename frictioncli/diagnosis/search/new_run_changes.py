@@ -37,6 +37,7 @@ from frictioncli.diagnosis.search.largest_structure import BETWEEN_DAYS
 from frictioncli.diagnosis.search.new_run import parts_of
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.new_run_torque import rivals_of_change, slow_torque
+from frictioncli.diagnosis.search.torque_scale import with_scale_on_new_run
 from frictioncli.effects.base import Basis, Effect
 from frictioncli.effects.drift import EFFECT as DRIFT
 from frictioncli.effects.history import (
@@ -117,14 +118,22 @@ def changes_on_new_run(
         cause = _change(residual, effect, tried, margin)
         if cause is None or (structure is not None and _goes_on(structure, cause)):
             continue
-        torque = residual.new.basis(effect, cause.fit.shape)
-        without = tuple(
-            misfit - columns @ cause.fit.coefficients
-            for misfit, columns in zip(residual.misfit, torque, strict=True)
-        )
-        if left - residual.mean_square((without[0], without[1])) >= _EXPLAINED * (left - beyond**2):
-            found.append(cause)
+        least = _EXPLAINED * (left - beyond**2)
+        judged = with_scale_on_new_run(cause, residual)
+        if any(left - _square_left(residual, one.fit) >= least for one in (cause, judged)):
+            found.append(judged)
     return tuple(sorted(found, key=lambda one: -one.test.statistic)[:1])
+
+
+def _square_left(residual: NewRunMisfit, fit: EffectFit) -> float:
+    """Return the mean square that an effect leaves of a new run's misfit [(N·m)²]."""
+    friction, load = (
+        misfit - columns @ fit.coefficients
+        for misfit, columns in zip(
+            residual.misfit, residual.new.basis(fit.effect, fit.shape), strict=True
+        )
+    )
+    return residual.mean_square((friction, load))
 
 
 def _goes_on(structure: Structure, cause: Cause) -> bool:

@@ -7,14 +7,16 @@ tells: relative to friction its change *f* has the density
 .. math:: p(f \mid m) = (1 - s)\, N(f; m, \sigma^2) + s\, U(f)
 
 about *m*, which is *e* with a scale, and what its load adds with a payload; with the probability
-*s* something else changed friction at that moment as well, evenly over a range (*U*).
+*s* something else changed friction at that moment as well, evenly over a range (*U*). A scale
+changes the load exactly in the form of gravity, which a payload at the end of an arm does to within
+some ten degrees only, and by few per cent as a rule, where payloads are of any size.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import norm
+from scipy.stats import cauchy, norm
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
@@ -23,6 +25,7 @@ from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.noise.significance import credible_set
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.effect_size import FORM, sizes_of
+from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects.base import Basis
 from frictioncli.effects.history import present
@@ -33,6 +36,15 @@ from frictioncli.effects.torque_scale import EFFECT as TORQUE_SCALE
 
 _PRIOR = 0.1
 """Odds of a change of the scale to one of the payload, before anything is measured."""
+
+_USUAL_SCALE = 0.02
+"""Median size of a change of the scale, whose distribution (Cauchy) has heavy tails."""
+
+_USUAL_PAYLOAD = 0.3
+"""Standard deviation of what a payload adds, relative to gravity."""
+
+_PHASE_OF_PAYLOAD = 0.5
+"""Standard deviation of the angle between the forms of a payload's torque and of gravity. [rad]"""
 
 _BETWEEN_DAYS = 0.015
 """Standard deviation of friction between days, relative to friction."""
@@ -86,7 +98,7 @@ def with_torque_scale(causes: Sequence[Cause], step: Step, rows: Sequence[Proble
         return unchanged
     steps = _steps_with(payload, causes, step.problem)
     others = [one.fit for one in causes if one is not payload and one not in steps]
-    scale = _probability(payload.fit, others, rows, step)
+    scale = _of_runs(payload.fit, others, rows, step)
     probabilities = {name: (1 - scale) * one for name, one in payload.probabilities.items()}
     probabilities[TORQUE_SCALE.name] = scale
     effects = credible_set(probabilities)
@@ -119,22 +131,61 @@ def _steps_with(payload: Cause, causes: Sequence[Cause], problem: Problem) -> li
     ]
 
 
-def _probability(
+def with_scale_on_new_run(cause: Cause, residual: NewRunMisfit) -> Cause:
+    """Return a payload of a new run that may be, or is, a change of the scale.
+
+    Parameters
+    ----------
+    cause : Cause
+        A change that begins on the new run.
+    residual : NewRunMisfit
+        What the extended model leaves of it.
+    """
+    new = residual.new
+    if cause.fit.effect is not PAYLOAD_CHANGE or new.has_load_channel:
+        return cause
+    added, columns = (new.basis(one, cause.fit.shape) for one in (PAYLOAD_CHANGE, TORQUE_SCALE))
+    none = Basis(np.empty((len(new.friction), 0)), np.empty((len(new.friction), 0)))
+    torque = Basis(*((one @ cause.fit.coefficients)[:, np.newaxis] for one in added))
+    left = Basis(*(one[:, np.newaxis] for one in residual.misfit))
+    scale = _probability(cause.fit, (left, none, columns, torque))
+    probabilities = {PAYLOAD_CHANGE.name: 1.0 - scale, TORQUE_SCALE.name: scale}
+    effects = credible_set(probabilities)
+    if TORQUE_SCALE.name not in effects:
+        return cause
+    judged = replace(cause, effects=effects, probabilities=probabilities)
+    if effects[0] != TORQUE_SCALE.name:
+        return judged
+    coefficients, covariance, statistic = residual.with_own_noise(columns).fitted(columns)
+    fit = EffectFit(TORQUE_SCALE, cause.fit.shape, coefficients, covariance, statistic)
+    return replace(judged, fit=fit)
+
+
+def _of_runs(
     payload: EffectFit, others: Sequence[EffectFit], rows: Sequence[Problem], step: Step
 ) -> float:
     """Return the probability that the scale of the torque changed, and not the payload [1]."""
     payload, *others = refit(step.problem, step.predicting_fit(), [payload, *others]).effects
     parts = [_rows_of(one, payload, others) for one in rows]
     left, base, scaled, added = (_joined([part[i] for part in parts]) for i in range(4))
+    return _probability(payload, (left, base, scaled, added))
+
+
+def _probability(payload: EffectFit, torques: tuple[Basis, Basis, Basis, Basis]) -> float:
+    """Return the probability of a change of the scale, from the columns of :func:`_rows_of` [1]."""
+    left, base, scaled, added = torques
     _, by_payload = _fitted(base.load, added.load, left.load)
     share, by_scale = _fitted(base.load, scaled.load, left.load)
-    size = np.mean(np.square(added.load))
-    if by_scale > by_payload + FORM**2 * size:
-        return 0.0
+    size = float(np.mean(np.square(added.load)))
+    aside = np.arcsin(np.sqrt(np.clip((by_scale - by_payload) / max(size, 1e-300), 0.0, 1.0)))
     changed, _ = _fitted(base.friction, scaled.friction, left.friction)
     with_payload, _ = _fitted(base.friction, scaled.friction, added.friction)
     odds = _PRIOR * _density(changed - share) / _density(changed - with_payload)
-    return odds / (1 + odds)
+    odds *= cauchy.pdf(share, scale=_USUAL_SCALE) / norm.pdf(share, scale=_USUAL_PAYLOAD)
+    error = float(np.sqrt(np.trace(payload.covariance) / 2 / np.sum(payload.coefficients**2)))
+    exactly = norm.pdf(aside, scale=np.hypot(FORM, error))
+    odds *= float(exactly / norm.pdf(aside, scale=_PHASE_OF_PAYLOAD))
+    return float(odds / (1 + odds))
 
 
 def _density(change: float) -> float:
