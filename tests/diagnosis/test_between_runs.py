@@ -1,10 +1,16 @@
 """Days that differ a little at random are no drift and no step; a drift within them is one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.search.between_runs import size_within_runs
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects import BY_NAME
 from frictioncli.simulator.settings import SynthesisSettings
 from tests.diagnosis.rules_of_names import keeps_the_rules
 from tests.simulation.changed_table import hours
@@ -58,3 +64,29 @@ def test_a_day_that_differs_by_more_than_days_do_has_a_step():
     (cause,) = diagnosis.causes
     assert cause.fit.effect.name == "step_change"
     assert cause.holds_on_new_run is False
+
+
+@pytest.fixture(scope="module")
+def two_days():
+    """Two days; the second is heated less, and so has other rates at the same temperatures."""
+    table = simulate_torques(SynthesisSettings(seed=4, runs=3, joint_kind="plain"))
+    less = (table["run"] == "day2") & (table["motor_temperature"] > 50)
+    problem, _ = build_problems(table[~less], "motor", "day3")
+    return problem
+
+
+@pytest.mark.parametrize("name", ["sensor_lag", "thermal_lag"])
+@pytest.mark.parametrize(("by_lag", "expected"), [(1.0, 1.0), (0.0, 0.0)])
+def test_a_sensor_that_was_replaced_is_no_lag_within_the_days(two_days, name, by_lag, expected):
+    """The torque of a lag on both days, or that of 1.2 °C by which the sensor of one is off."""
+    effect, table = BY_NAME[name], two_days.table
+    shape = {one.name: 1800.0 for one in effect.shape}
+    columns = two_days.basis(effect, shape).friction
+    coefficients = np.array([60.0] if name == "sensor_lag" else [0.9, 4.0, 0.0, 0.0])
+    replaced = 1.2 * (two_days.layout.run[two_days.layout.row_pair] == 1)
+    torque = columns @ coefficients if by_lag else replaced * table.temperature_slope
+    simulated = two_days.friction - two_days.friction_misfit
+    problem = replace(two_days, friction=simulated + torque)
+    found = np.linalg.lstsq(columns, torque, rcond=None)[0]
+    fit = EffectFit(effect, shape, found, np.eye(len(found)), 0.0)
+    assert size_within_runs(fit, [], problem) == pytest.approx(expected, abs=0.02)

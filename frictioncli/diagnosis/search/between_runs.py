@@ -2,7 +2,10 @@
 
 A few days whose friction differs at random look like a drift, like running-in, or like a step that
 happened between two of them. Such a cause has a name if it shows within the runs as well, beside a
-level of friction of each run, or if the runs differ by more than days do.
+level of friction of each run, or if the runs differ by more than days do. A sensor that was
+replaced, or another oil, shifts the temperature at which friction is the same, and looks like a lag
+where some runs are heated faster than others: a lag has a name if it shows within the runs, beside
+a level and a shift of temperature of each.
 """
 
 from collections.abc import Sequence
@@ -10,9 +13,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.fit.left_by_base import Z95
+from frictioncli.diagnosis.fit.left_by_base import Z95, left_by, span_of, torque_left_by
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.largest_structure import BETWEEN_DAYS
 from frictioncli.diagnosis.search.step import Step
@@ -21,7 +25,12 @@ from frictioncli.effects.drift import EFFECT as DRIFT
 from frictioncli.effects.history import history, spans_with
 from frictioncli.effects.pair_series import measured_share
 from frictioncli.effects.run_in import EFFECT as RUN_IN
+from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
 from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
+from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
+
+_LAGS = frozenset({SENSOR_LAG.name, THERMAL_LAG.name})
+"""Effects of the history of the temperature."""
 
 _WITHIN = 6.6
 """Twice the log likelihood ratio by which a cause shows within the runs: p = 0.01."""
@@ -30,12 +39,17 @@ _OF_RUN = 0.15
 """Share of the rows of a run, at its start or end, in which a change may be there without showing
 within the run."""
 
+_LEAST_WITHIN = 2 / 3
+"""Least size of a lag within the runs, relative to its size in all."""
+
 _DAYS_DIFFER = (
     "it shows only in how the runs differ, and by no more than friction may differ from day to day"
 )
 
 
-def without_differences_of_runs(causes: Sequence[Cause], step: Step) -> tuple[Cause, ...]:
+def without_differences_of_runs(
+    causes: Sequence[Cause], step: Step, measured: Problem
+) -> tuple[Cause, ...]:
     """Return causes of which none has a name that only days which differ show.
 
     Parameters
@@ -44,13 +58,49 @@ def without_differences_of_runs(causes: Sequence[Cause], step: Step) -> tuple[Ca
         Causes with their standing.
     step : Step
         The last step of the search.
+    measured : Problem
+        The rows about the measured temperature.
     """
+    named = [one.fit for one in causes if one.standing == "named"]
+
+    def only_between_runs(fit: EffectFit) -> bool:
+        if fit.effect.name not in _LAGS:
+            return differs_as_days_do(fit, step)
+        others = [one for one in named if one.effect.name not in _LAGS]
+        return size_within_runs(fit, others, measured) < _LEAST_WITHIN
+
     return tuple(
         replace(one, standing="undetermined", reason=_DAYS_DIFFER)
-        if one.standing == "named" and differs_as_days_do(one.fit, step)
+        if one.standing == "named" and only_between_runs(one.fit)
         else one
         for one in causes
     )
+
+
+def size_within_runs(fit: EffectFit, others: Sequence[EffectFit], measured: Problem) -> float:
+    """Return the size of a lag within the runs, relative to that with which it was found [1].
+
+    Parameters
+    ----------
+    fit : EffectFit
+        The lag.
+    others : sequence of EffectFit
+        Other effects that stand beside it.
+    measured : Problem
+        The rows about the measured temperature.
+    """
+    run = measured.layout.run[measured.layout.row_pair]
+    later = np.unique(run)[1:]
+    if not len(later):
+        return 1.0
+    there = (run[:, np.newaxis] == later).astype(float)
+    columns = np.hstack([there, there * measured.table.temperature_slope[:, np.newaxis]])
+    of_runs = Basis(columns, np.zeros_like(columns))
+    span = span_of(measured, [*(measured.basis(one.effect, one.shape) for one in others), of_runs])
+    torque = torque_left_by(span, measured, fit)
+    misfit = Basis(measured.friction_misfit[:, np.newaxis], measured.load_misfit[:, np.newaxis])
+    square = float(torque @ torque)
+    return float(torque @ left_by(span, misfit)[:, 0]) / square if square > 0 else 0.0
 
 
 def differs_as_days_do(

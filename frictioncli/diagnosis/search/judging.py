@@ -122,7 +122,7 @@ class Judging:
         causes, timing = judged_by_timing(first, self.starts)
         causes = with_size_on_new_run(causes, names_of(possible), found.step, self.new, self.margin)
         causes = without_linear_lag(causes, self.problem)
-        causes = without_differences_of_runs(causes, found.step)
+        causes = without_differences_of_runs(causes, found.step, self.measured[0])
         named = [cause for cause in causes if cause.standing == "named"]
         held = judged_together(named, found.step, self.problem, self.new)
         return JudgedCauses(found=found, causes=_with(causes, held), timing=timing)
