@@ -51,7 +51,9 @@ def finding_text(cause: CauseRecord) -> str:
 def size_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
     """Return the size of a cause with its interval, where it shows and what the base leaves of it.
 
-    Of some effects, such as those with several coefficients, only what the base leaves is known.
+    Of some effects, such as those with several coefficients, only what the base leaves is known. Of
+    one that is not determined nothing else is worth saying: the base takes the rest of it, whatever
+    its size.
 
     Parameters
     ----------
@@ -65,8 +67,11 @@ def size_text(cause: CauseRecord, document: DiagnosisDocument) -> str:
         return "of unknown size"
     if OTHER_JOINT in cause.effects:
         return f"{quantity_text(cause.size, cause.size_ci95, unit)} RMS while they move"
-    text = f"{quantity_text(cause.size, cause.size_ci95, unit)} RMS in the {cause.channel}"
     left = cause.visible_size
+    if cause.standing == "undetermined" and left is not None:
+        remaining = quantity_text(left, cause.visible_ci95, unit)
+        return f"{remaining} RMS in the {cause.channel} beyond what the base model absorbs"
+    text = f"{quantity_text(cause.size, cause.size_ci95, unit)} RMS in the {cause.channel}"
     if left is None or left >= _LEFT_BY_BASE * cause.size:
         only_that = cause.effects and left == cause.size
         return f"{text} beyond what the base model absorbs" if only_that else text

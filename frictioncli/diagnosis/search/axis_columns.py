@@ -169,7 +169,8 @@ def axis_columns(problem: Problem) -> dict[tuple[tuple[str, ...], Channel], Arra
     time = cosines(table.clock)[:, :_WAVES]
     warming = _HYSTERESIS * (2 * _rising(problem) - 1)[:, np.newaxis]
     squared = np.square(table.load)[:, np.newaxis] / max(float(np.max(np.square(table.load))), 1e-9)
-    waves = harmonics[:, : 2 * _SLOW_HARMONICS]
+    # over a part of a turn a wave has a mean, whose product with a quantity is one of that alone
+    waves = harmonics[:, : 2 * _SLOW_HARMONICS] - harmonics[:, : 2 * _SLOW_HARMONICS].mean(axis=0)
     levels = _levels(table.temperature)
     relative_temperature = ((table.temperature - table.temperature.mean()) / 10.0)[:, np.newaxis]
     relative_speed = (table.speed / table.speed.mean())[:, np.newaxis]
