@@ -43,6 +43,8 @@ from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG, settled
 from frictioncli.effects import EFFECTS
 from frictioncli.effects.base import Effect
+from frictioncli.effects.payload_change import EFFECT as PAYLOAD_CHANGE
+from frictioncli.effects.torque_scale import EFFECT as TORQUE_SCALE
 from frictioncli.errors import NotEnoughData
 from frictioncli.logs.runs.run_order import runs_in_order
 
@@ -163,7 +165,7 @@ def _diagnosed(
         predicted = predicting(modelled, causes)
         appeared = changes_on_new_run(
             NewRunMisfit.of(problem, new, predicted, weighted_fit, step.noise()),
-            [one for one in effects if one.name not in {cause.fit.effect.name for cause in causes}],
+            [one for one in effects if one.name not in _found(causes)],
             floor=found.floor,
             # structure without a name may be on the held-out run in another way
             usual=rms_misfit(problem, modelled) if named.structure is None else found.floor,
@@ -234,6 +236,12 @@ def _diagnosed(
         settling=rows.settling,
         empirical=empirical,
     )
+
+
+def _found(causes: Sequence[Cause]) -> frozenset[str]:
+    """Return the names of the effects that causes were found as, and a payload for a scale."""
+    names = {one.fit.effect.name for one in causes}
+    return frozenset(names | {PAYLOAD_CHANGE.name} if TORQUE_SCALE.name in names else names)
 
 
 def predicting(extension: Extension, causes: Sequence[Cause]) -> Extension:

@@ -6,10 +6,11 @@ tells: relative to friction its change *f* has the density
 
 .. math:: p(f \mid m) = (1 - s)\, N(f; m, \sigma^2) + s\, U(f)
 
-about *m*, which is *e* with a scale, and what its load adds with a payload; with the probability
-*s* something else changed friction at that moment as well, evenly over a range (*U*). A scale
-changes the load exactly in the form of gravity, which a payload at the end of an arm does to within
-some ten degrees only, and by few per cent as a rule, where payloads are of any size.
+about *m*, which is *e* with a scale, and what its load adds with a payload; before and after a
+moment within a day it differs less. With the probability *s* something else changed friction at
+that moment as well, evenly over a range (*U*). A scale changes the load exactly in the form of
+gravity, which a payload at the end of an arm does to within some ten degrees only, and by few per
+cent as a rule, where payloads are of any size.
 """
 
 from collections.abc import Sequence
@@ -48,6 +49,12 @@ _PHASE_OF_PAYLOAD = 0.5
 
 _BETWEEN_DAYS = 0.015
 """Standard deviation of friction between days, relative to friction."""
+
+_WITHIN_DAY = 0.005
+"""The same before and after a moment within a day."""
+
+_OF_RUN = 0.1
+"""Least share of the rows of a run on either side of such a moment."""
 
 _SERVICED = 0.05
 """Probability that friction was changed at the same moment."""
@@ -148,7 +155,7 @@ def with_scale_on_new_run(cause: Cause, residual: NewRunMisfit) -> Cause:
     none = Basis(np.empty((len(new.friction), 0)), np.empty((len(new.friction), 0)))
     torque = Basis(*((one @ cause.fit.coefficients)[:, np.newaxis] for one in added))
     left = Basis(*(one[:, np.newaxis] for one in residual.misfit))
-    scale = _probability(cause.fit, (left, none, columns, torque))
+    scale = _probability(cause.fit, (left, none, columns, torque), [new])
     probabilities = {PAYLOAD_CHANGE.name: 1.0 - scale, TORQUE_SCALE.name: scale}
     effects = credible_set(probabilities)
     if TORQUE_SCALE.name not in effects:
@@ -168,10 +175,12 @@ def _of_runs(
     payload, *others = refit(step.problem, step.predicting_fit(), [payload, *others]).effects
     parts = [_rows_of(one, payload, others) for one in rows]
     left, base, scaled, added = (_joined([part[i] for part in parts]) for i in range(4))
-    return _probability(payload, (left, base, scaled, added))
+    return _probability(payload, (left, base, scaled, added), rows)
 
 
-def _probability(payload: EffectFit, torques: tuple[Basis, Basis, Basis, Basis]) -> float:
+def _probability(
+    payload: EffectFit, torques: tuple[Basis, Basis, Basis, Basis], rows: Sequence[Problem]
+) -> float:
     """Return the probability of a change of the scale, from the columns of :func:`_rows_of` [1]."""
     left, base, scaled, added = torques
     _, by_payload = _fitted(base.load, added.load, left.load)
@@ -180,7 +189,9 @@ def _probability(payload: EffectFit, torques: tuple[Basis, Basis, Basis, Basis])
     aside = np.arcsin(np.sqrt(np.clip((by_scale - by_payload) / max(size, 1e-300), 0.0, 1.0)))
     changed, _ = _fitted(base.friction, scaled.friction, left.friction)
     with_payload, _ = _fitted(base.friction, scaled.friction, added.friction)
-    odds = _PRIOR * _density(changed - share) / _density(changed - with_payload)
+    within = any(_begins_or_ends_within(payload, one) for one in rows)
+    spread = _WITHIN_DAY if within else _BETWEEN_DAYS
+    odds = _PRIOR * _density(changed - share, spread) / _density(changed - with_payload, spread)
     odds *= cauchy.pdf(share, scale=_USUAL_SCALE) / norm.pdf(share, scale=_USUAL_PAYLOAD)
     error = float(np.sqrt(np.trace(payload.covariance) / 2 / np.sum(payload.coefficients**2)))
     exactly = norm.pdf(aside, scale=np.hypot(FORM, error))
@@ -188,9 +199,17 @@ def _probability(payload: EffectFit, torques: tuple[Basis, Basis, Basis, Basis])
     return float(odds / (1 + odds))
 
 
-def _density(change: float) -> float:
+def _begins_or_ends_within(change: EffectFit, problem: Problem) -> bool:
+    """Return whether a run has rows with a change and without it."""
+    there = present(measured_share(problem.all_runs)[problem.rows], change.shape)
+    run = problem.layout.run[problem.layout.row_pair]
+    shares = (float(np.mean(there[run == one])) for one in np.unique(run))
+    return any(_OF_RUN < share < 1 - _OF_RUN for share in shares)
+
+
+def _density(change: float, spread: float) -> float:
     """Return the density of a change of friction that is not expected, relative to it [1]."""
-    usual = float(norm.pdf(change, scale=_BETWEEN_DAYS))
+    usual = float(norm.pdf(change, scale=spread))
     return (1 - _SERVICED) * usual + _SERVICED / _RANGE
 
 
