@@ -168,7 +168,8 @@ def named(work):
 def test_payloads_in_turn_are_no_finding_and_an_undeclared_mass_is(undeclared):
     clean = diagnose_joint(carried(noise=0.3), "motor", "N·m", DiagnosisSettings())
     assert clean.verdict == "no_evidence"
-    assert ("payload_change",) in named(undeclared)
+    # 1.7 % of gravity may be another scale of the torque, at 6 %
+    assert "payload_change" in [one[0] for one in named(undeclared)]
 
 
 def read_back_predicts_load(work):
