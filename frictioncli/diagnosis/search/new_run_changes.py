@@ -120,18 +120,19 @@ def changes_on_new_run(
             continue
         least = _EXPLAINED * (left - beyond**2)
         judged = with_scale_on_new_run(cause, residual)
-        if any(left - _square_left(residual, one.fit) >= least for one in (cause, judged)):
+        squares = (
+            _square_left(residual, residual.new.basis(one.effect, one.shape), one.coefficients)
+            for one in (cause.fit, judged.fit)
+        )
+        if any(left - square >= least for square in squares):
             found.append(judged)
     return tuple(sorted(found, key=lambda one: -one.test.statistic)[:1])
 
 
-def _square_left(residual: NewRunMisfit, fit: EffectFit) -> float:
-    """Return the mean square that an effect leaves of a new run's misfit [(N·m)²]."""
+def _square_left(residual: NewRunMisfit, basis: Basis, coefficients: Array) -> float:
+    """Return the mean square that a torque leaves of a new run's misfit [(N·m)²]."""
     friction, load = (
-        misfit - columns @ fit.coefficients
-        for misfit, columns in zip(
-            residual.misfit, residual.new.basis(fit.effect, fit.shape), strict=True
-        )
+        misfit - one @ coefficients for misfit, one in zip(residual.misfit, basis, strict=True)
     )
     return residual.mean_square((friction, load))
 
@@ -283,10 +284,7 @@ def _nearly_explained(
 
     def explained(basis: Basis) -> tuple[float, float]:
         coefficients, _, statistic = residual.fitted(basis)
-        friction, load = (
-            misfit - one @ coefficients for misfit, one in zip(residual.misfit, basis, strict=True)
-        )
-        return statistic, whole - residual.mean_square((friction, load))
+        return statistic, whole - _square_left(residual, basis, coefficients)
 
     statistic, square = explained(columns)
     found = [explained(one) for one in rivals]

@@ -106,13 +106,10 @@ def with_torque_scale(causes: Sequence[Cause], step: Step, rows: Sequence[Proble
     steps = _steps_with(payload, causes, step.problem)
     others = [one.fit for one in causes if one is not payload and one not in steps]
     scale = _of_runs(payload.fit, others, rows, step)
-    probabilities = {name: (1 - scale) * one for name, one in payload.probabilities.items()}
-    probabilities[TORQUE_SCALE.name] = scale
-    effects = credible_set(probabilities)
-    if TORQUE_SCALE.name not in effects:
+    judged = _or_scale(payload, scale)
+    if TORQUE_SCALE.name not in judged.effects:
         return unchanged
-    judged = replace(payload, effects=effects, probabilities=probabilities)
-    if effects[0] != TORQUE_SCALE.name:
+    if judged.effects[0] != TORQUE_SCALE.name:
         kept = tuple(judged if one is payload else one for one in causes)
         return replace(unchanged, causes=kept)
     gone = {one.fit.effect for one in (payload, *steps)}
@@ -156,16 +153,22 @@ def with_scale_on_new_run(cause: Cause, residual: NewRunMisfit) -> Cause:
     torque = Basis(*((one @ cause.fit.coefficients)[:, np.newaxis] for one in added))
     left = Basis(*(one[:, np.newaxis] for one in residual.misfit))
     scale = _probability(cause.fit, (left, none, columns, torque), [new])
-    probabilities = {PAYLOAD_CHANGE.name: 1.0 - scale, TORQUE_SCALE.name: scale}
-    effects = credible_set(probabilities)
-    if TORQUE_SCALE.name not in effects:
-        return cause
-    judged = replace(cause, effects=effects, probabilities=probabilities)
-    if effects[0] != TORQUE_SCALE.name:
+    judged = _or_scale(cause, scale)
+    if judged.effects[0] != TORQUE_SCALE.name:
         return judged
     coefficients, covariance, statistic = residual.with_own_noise(columns).fitted(columns)
     fit = EffectFit(TORQUE_SCALE, cause.fit.shape, coefficients, covariance, statistic)
     return replace(judged, fit=fit)
+
+
+def _or_scale(payload: Cause, scale: float) -> Cause:
+    """Return a payload with the scale in its set, by its probability; as it is if that is small."""
+    probabilities = {name: (1 - scale) * one for name, one in payload.probabilities.items()}
+    probabilities[TORQUE_SCALE.name] = scale
+    effects = credible_set(probabilities)
+    if TORQUE_SCALE.name not in effects:
+        return payload
+    return replace(payload, effects=effects, probabilities=probabilities)
 
 
 def _of_runs(
