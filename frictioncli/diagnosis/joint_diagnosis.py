@@ -10,8 +10,8 @@ from frictioncli.diagnosis.ramps.evidence import RampEvidence
 from frictioncli.diagnosis.ramps.settling import Settling
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.search_result import SearchResult
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate
 from frictioncli.effects.base import Effect
 

@@ -17,13 +17,13 @@ from frictioncli.diagnosis.search.catalogue import Catalogue
 from frictioncli.diagnosis.search.cause_search import find_causes
 from frictioncli.diagnosis.search.detectable_size import SHAPES, Rules, detectable_size
 from frictioncli.diagnosis.search.effect_size import left_shares
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.planted_fits import PlantedFits
 from frictioncli.diagnosis.search.planted_rivals import PlantedRivals
 from frictioncli.diagnosis.search.planted_torque import error_forms, planted_torques
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.standing import with_standing
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME, EFFECTS
 from frictioncli.effects.base import Basis

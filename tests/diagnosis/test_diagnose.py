@@ -14,7 +14,7 @@ from frictioncli.diagnosis.diagnose import diagnose_joint
 from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document
 from frictioncli.diagnosis.documents.text import verdict_text
 from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
-from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import EFFECTS
 from frictioncli.errors import NotEnoughData, OptionError, TableError

@@ -14,8 +14,8 @@ from frictioncli.diagnosis.documents.from_diagnosis import diagnosis_document
 from frictioncli.diagnosis.documents.parameters import TorqueUnits
 from frictioncli.diagnosis.documents.remainder import remainder_record
 from frictioncli.diagnosis.documents.structure_record import structure_record, unnamed_record
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.largest_structure import largest_structure
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.effects import BY_NAME
 from frictioncli.errors import TableError

@@ -27,9 +27,9 @@ from frictioncli.diagnosis.empirical.term import (
 from frictioncli.diagnosis.fit.columns import base_rows
 from frictioncli.diagnosis.fit.extension import extend, misfits
 from frictioncli.diagnosis.noise.discrepancy import SHARE
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.errors import TableError
 from frictioncli.model.fitting import fit_joint

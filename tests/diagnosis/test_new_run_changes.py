@@ -7,9 +7,9 @@ from frictioncli.diagnosis.data.build_problem import build_problems
 from frictioncli.diagnosis.fit.extension import extend, misfits, rms_misfit
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit, Weights
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.new_run_changes import changes_on_new_run, with_effect
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.effects import BY_NAME, EFFECTS
 from frictioncli.effects.history import stretches
 from frictioncli.model.noise import Noise

@@ -1,8 +1,15 @@
 """Which axis is reported where several have structure."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
-from frictioncli.diagnosis.search.lack_of_fit import Structure, first_above
+from frictioncli.diagnosis.search.lack_of_fit import beside_others, structures
+from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
+from frictioncli.diagnosis.search.structure_above_margin import first_above
 from tests.diagnosis.dense_noise import problem
 
 DATA = problem(1)
@@ -25,6 +32,9 @@ FAINT = along("speed", 1e-6, 0.20, 0.15)
 DOUBTFUL = along("time", 0.02, 0.50, 0.40)
 
 
+ANYWAY = {"problem": DATA, "margin": 0.25, "level": 5e-3, "beside": lambda one, _: one}
+
+
 @pytest.mark.parametrize(
     ("found", "expected"),
     [
@@ -40,11 +50,43 @@ DOUBTFUL = along("time", 0.02, 0.50, 0.40)
     ],
 )
 def test_the_likeliest_of_what_is_above_the_margin_is_reported(found, expected):
-    assert first_above(found, DATA, 0.25, 0.05) == expected
+    assert first_above(found, **ANYWAY) == expected
 
 
-def test_what_is_known_is_not_reported():
-    found = first_above([ANGLE, TEMPERATURE], DATA, 0.25, 0.05, lambda one: one is TEMPERATURE)
-    assert found is None
-    found = first_above([ANGLE, TEMPERATURE], DATA, 0.25, 0.05, lambda one: one is ANGLE)
-    assert found == TEMPERATURE
+@pytest.mark.parametrize(
+    ("left", "expected"),
+    [
+        (TEMPERATURE, TEMPERATURE),
+        (replace(TEMPERATURE, size=0.2), None),
+        (replace(TEMPERATURE, p_value=0.1), None),
+        (None, None),
+    ],
+)
+def test_what_imitates_something_likelier_and_small_is_not_reported(left, expected):
+    asked = []
+
+    def beside(one, others):
+        asked.append((one, tuple(others)))
+        return left
+
+    found = [replace(FAINT, statistic=9.0), TEMPERATURE]
+    assert first_above(found, **ANYWAY | {"beside": beside}) == expected
+    assert asked == [(TEMPERATURE, (found[0],))]
+
+
+def test_beside_structure_its_imitations_are_gone():
+    """A ripple that grows with temperature is partly one of the angle, the time and the load."""
+    warm = (DATA.table.temperature - DATA.table.temperature.mean()) / 10.0
+    torque = 0.8 * warm * np.sin(3 * np.radians(DATA.table.position))
+    step = Step.of(Precomputed.of(replace(DATA, friction=DATA.friction + torque)), [])
+    true, *others = structures(step)
+    assert true.axes == ("position", "temperature")
+    imitations = [one for one in others if one.p_value < 5e-3]
+    assert imitations
+    for one in imitations:
+        left = beside_others(one, [true], step)
+        assert left is None or left.p_value > 5e-3
+    # none of them explains it
+    left = beside_others(true, imitations, step)
+    assert left.p_value < 1e-6
+    assert left.size > 0.5 * true.size

@@ -14,7 +14,7 @@ from frictioncli.diagnosis.empirical.next_experiment import experiment
 from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.search.axis_columns import friction_tells_load, load_over_angle
 from frictioncli.diagnosis.search.confounded import has_temperature
-from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.diagnosis.search.timing_causes import DELAY
 
 

@@ -58,8 +58,8 @@ from frictioncli.diagnosis.fit.extension import Extension, misfits
 from frictioncli.diagnosis.fit.gain import Gain
 from frictioncli.diagnosis.noise.discrepancy import SHARE
 from frictioncli.diagnosis.search.axis_columns import varying_axes
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.distributions import chi2_tail
 
 _MOST_FORMS = 2

@@ -17,12 +17,14 @@ from frictioncli.diagnosis.empirical.estimate import Empirical, as_structure, em
 from frictioncli.diagnosis.fit.extension import Extension, misfits
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
-from frictioncli.diagnosis.search.lack_of_fit import Structure, first_above, structures
+from frictioncli.diagnosis.search.lack_of_fit import structures
 from frictioncli.diagnosis.search.largest_structure import inadequacy, size_along
 from frictioncli.diagnosis.search.measurement import beside_base
 from frictioncli.diagnosis.search.new_run_changes import ADEQUATE
 from frictioncli.diagnosis.search.recurring_structure import recurring_structure
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
+from frictioncli.diagnosis.search.structure_above_margin import unnamed_structure
 
 _LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
@@ -83,7 +85,7 @@ def structure_on_new_run(
         recurring = recurring_structure(step, there, margin)
         if recurring is not None:
             return recurring, None
-    found = first_above(there, problem, margin, BEYOND_DOUBT)
+    found = unnamed_structure(own, margin, BEYOND_DOUBT)
     if found is not None and _was_there(found, step):
         return None
     if found is None or not _SLOW.isdisjoint(found.axes):

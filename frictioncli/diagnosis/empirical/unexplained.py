@@ -10,8 +10,9 @@ from frictioncli.diagnosis.fit.gain import Gain
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
-from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
+from frictioncli.diagnosis.search.structure_above_margin import unnamed_structure
 from frictioncli.diagnosis.search.understood import MOST_LEFT
 from frictioncli.distributions import chi2_tail
 

@@ -25,7 +25,6 @@ from frictioncli.diagnosis.search.effect_size import (
     remember_left,
     shown_of,
 )
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import channel_margin, whole_torque
 from frictioncli.diagnosis.search.planted_fits import SHARED, PlantedFit, PlantedFits
 from frictioncli.diagnosis.search.planted_rivals import PlantedRivals, RivalsOfTorques
@@ -34,6 +33,7 @@ from frictioncli.diagnosis.search.possible import beyond, standard_errors
 from frictioncli.diagnosis.search.rivals import evidence_missed
 from frictioncli.diagnosis.search.standing import level_of
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.diagnosis.search.understood import MOST_LEFT, is_part
 from frictioncli.effects.base import Effect
 

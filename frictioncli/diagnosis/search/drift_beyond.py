@@ -7,6 +7,7 @@ import numpy as np
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit
 from frictioncli.diagnosis.fit.variance_components import fit_variances
+from frictioncli.diagnosis.search.random_function import RandomFunction
 from frictioncli.diagnosis.search.realised_size import realised_drift
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.distributions import chi2_tail
@@ -21,17 +22,13 @@ class DriftBeyond:
 
     Attributes
     ----------
-    statistic : float
-        Twice the log likelihood ratio of a larger drift.
-    size, interval : float, (float, float)
-        RMS of what the base leaves of it, and its 95 % interval. [N·m]
+    function : RandomFunction
+        What a larger drift gains, and the size of it.
     chance : float
         Probability that on these runs it was no larger than any joint's.
     """
 
-    statistic: float
-    size: float
-    interval: tuple[float, float]
+    function: RandomFunction
     chance: float
 
 
@@ -64,7 +61,7 @@ def drift_beyond(step: Step, expected: Components, null: MixedFit, number: int) 
         without = fit_variances(limited(0.0), products, known, step.precomputed.start)
         # of strength and correlation time
         chance = max(chance, chi2_tail(without.objective - fit.objective, 2))
-    return DriftBeyond(null.objective - fit.objective, size, interval, chance)
+    return DriftBeyond(RandomFunction(null.objective - fit.objective, size, interval), chance)
 
 
 def chance_of_less(size: float, interval: tuple[float, float], most: float) -> float:

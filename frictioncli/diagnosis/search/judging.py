@@ -10,13 +10,13 @@ from frictioncli.diagnosis.search.between_runs import without_differences_of_run
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import judged_together, uncertain_causes
 from frictioncli.diagnosis.search.decays import with_one_decay, without_slow_recovery
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.shown import shown_by_residuals
 from frictioncli.diagnosis.search.size_on_new_run import with_size_on_new_run
 from frictioncli.diagnosis.search.standing import with_standing, without_linear_lag
 from frictioncli.diagnosis.search.stated_size import sizes_beside_each_other
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.diagnosis.search.timing_causes import DELAY, judged_by_timing
 from frictioncli.diagnosis.search.understood import understood
 

@@ -1,15 +1,12 @@
 r"""Lack of fit along every axis of the experiment, whatever the cause.
 
-Along each axis, or two of them, the torque gets one more random function *f* beside base, accepted
-effects, noise and the discrepancy that any model has,
-
-.. math:: f = \omega \sum_k s_k \gamma_k c_k , \quad \gamma_k \sim N(0, 1) ,
-
-with columns :math:`c_k` of that axis: harmonics of the angle, levels of speed, cosines of
-temperature, load and time, and products. Twice the logarithm of the restricted likelihood that the
-best amplitude :math:`\omega` gains is half the time 0, else a chi-squared variable of one degree
-of freedom, where nothing is there [1]_. Along the time the drift itself is such a function: it is
-structure where it is, or surely was, more than any joint has. They name no cause.
+Along each axis, or two of them, the torque gets one more random function beside base, accepted
+effects, noise and the discrepancy that any model has (:mod:`.random_function`): harmonics of the
+angle, levels of speed, cosines of temperature, load and time, and products. Twice the logarithm of
+the restricted likelihood that its best amplitude gains is half the time 0, else a chi-squared
+variable of one degree of freedom, where nothing is there [1]_. Along the time the drift itself is
+such a function: it is structure where it is, or surely was, more than any joint has. They name no
+cause.
 
 References
 ----------
@@ -18,19 +15,13 @@ References
    doi:10.1080/01621459.1987.10478472.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from frictioncli.arrays import Array
-from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.added_function import likely_amplitudes
-from frictioncli.diagnosis.fit.columns import reduced
-from frictioncli.diagnosis.fit.left_by_base import products_left_by, span_of
-from frictioncli.diagnosis.fit.mixed_model import Components, MixedFit, evaluate
-from frictioncli.diagnosis.fit.transformed_columns import Part
-from frictioncli.diagnosis.fit.variance_components import fit_variances
+from frictioncli.diagnosis.fit.mixed_model import Components
 from frictioncli.diagnosis.noise.discrepancy_functions import SPEED_RIPPLE
 from frictioncli.diagnosis.search.axis_columns import (
     angle_and_speed,
@@ -40,11 +31,11 @@ from frictioncli.diagnosis.search.axis_columns import (
 )
 from frictioncli.diagnosis.search.carried_load import most_likely_constant
 from frictioncli.diagnosis.search.drift_beyond import drift_beyond
-from frictioncli.diagnosis.search.margin import channel_margin
-from frictioncli.diagnosis.search.realised_size import realised
+from frictioncli.diagnosis.search.random_function import Known, RandomFunction
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.distributions import chi2_tail
-from frictioncli.effects.base import CHANNELS, Basis, Channel
+from frictioncli.effects.base import CHANNELS, Channel
 
 _DRIFT = 0.015
 """Greatest RMS of a drift that is no structure, relative to the mean friction."""
@@ -52,128 +43,20 @@ _DRIFT = 0.015
 _PINNED = 1e-3
 """Spread of the amplitudes of the discrepancy: they stay as they are expected."""
 
-_SIGNIFICANT = 5e-3
-"""Greatest p-value of structure that no effect explains."""
-
-_ROUNDED = 1e-9
-"""Share of its squares below which what the base leaves of a function is rounding."""
-
-_TOLD_BY_ANGLE = 10.0
+TOLD_BY_ANGLE = 10.0
 """By so much structure along the load must be likelier than another: with one payload and pose the
 load is a function of the angle, and what goes with it goes with the angle, too."""
 
-_LOAD: tuple[tuple[str, ...], Channel] = (("load",), "friction")
-_LOAD_AND_SPEED: tuple[tuple[str, ...], Channel] = (("load", "speed"), "friction")
-_ANGLE_AND_SPEED: tuple[tuple[str, ...], Channel] = (("position", "speed"), "friction")
+_Place = tuple[tuple[str, ...], Channel]
+"""Axes and channel."""
 
-_Found = tuple[tuple[str, ...], Channel, float, float, tuple[float, float]]
-"""Axes, channel, twice the log likelihood ratio, size [N·m] and its interval."""
+_Judged = tuple[RandomFunction, Array]
+"""A random function and its columns."""
 
-_NO_DOUBT = 1e-12
-"""P-value below which there is no doubt that structure is there."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Structure:
-    """Lack of fit along one axis of the experiment.
-
-    Attributes
-    ----------
-    axes : tuple of str
-        The axis, or the two axes, along which it shows: ``position``, ``speed``, ``temperature``,
-        ``time`` or ``load``.
-    channel : {"friction", "load"}
-        The channel.
-    p_value : float
-        Probability that noise explains as much, corrected for the number of axes (Bonferroni).
-    statistic : float
-        Twice the log likelihood ratio to base and accepted effects.
-    size : float
-        RMS of what base and effects leave of it. [N·m]
-    interval : (float, float)
-        95 % interval of that. [N·m]
-    or_load : bool
-        Whether structure along the angle is about as likely along the load, which differs from it.
-    only_on : str
-        The only run that has it, where that was kept out of the diagnosis; else empty.
-    """
-
-    axes: tuple[str, ...]
-    channel: Channel
-    p_value: float
-    statistic: float
-    size: float
-    interval: tuple[float, float]
-    or_load: bool = False
-    only_on: str = ""
-
-    @property
-    def axis(self) -> str:
-        """The axes in words."""
-        return " and ".join(self.axes).replace("position", "angle")
-
-
-def unnamed_structure(
-    step: Step,
-    margin: float,
-    alpha: float,
-    is_known: Callable[[Structure], bool] = lambda _: False,
-) -> Structure | None:
-    """Return the most significant structure beside the causes that is above the margin.
-
-    Surely above it, or most probably where there is no doubt that it is there.
-
-    Parameters
-    ----------
-    step : Step
-        Base and accepted effects.
-    margin, alpha : float
-        Smallest size worth a name [N·m] and significance level.
-    is_known : callable, optional
-        Whether structure belongs to something that is known, and does not count.
-    """
-    return first_above(structures(step), step.problem, margin, alpha, is_known)
-
-
-def first_above(
-    found: Sequence[Structure],
-    problem: Problem,
-    margin: float,
-    alpha: float,
-    is_known: Callable[[Structure], bool] = lambda _: False,
-) -> Structure | None:
-    """Return the most likely structure above the margin, if any is significant and surely above it.
-
-    Where one is surely above the margin, that much is left; along which axis, the likeliest says.
-
-    Parameters
-    ----------
-    found : sequence of Structure
-        The lack of fit along every axis, most likely first.
-    problem : Problem
-        The rows.
-    margin, alpha, is_known
-        As of :func:`unnamed_structure`.
-    """
-    significant = [
-        one for one in found if one.p_value < min(_SIGNIFICANT, alpha) and not is_known(one)
-    ]
-    above = [one for one in significant if one.size > channel_margin(problem, one.channel, margin)]
-    for one in above:
-        least = one.size if one.p_value < _NO_DOUBT else one.interval[0]
-        if least > channel_margin(problem, one.channel, margin):
-            return replace(above[0], or_load=_may_be_of_load(above[0], found))
-    return None
-
-
-def _may_be_of_load(one: Structure, found: Sequence[Structure]) -> bool:
-    """Return whether structure along the angle is about as likely along the load."""
-    return one.axes[0] == "position" and any(
-        two.axes == ("load", *one.axes[1:])
-        and two.channel == one.channel
-        and two.statistic > one.statistic - _TOLD_BY_ANGLE
-        for two in found
-    )
+_LOAD: _Place = (("load",), "friction")
+_ANGLE: _Place = (("position",), "friction")
+_LOAD_AND_SPEED: _Place = (("load", "speed"), "friction")
+_ANGLE_AND_SPEED: _Place = (("position", "speed"), "friction")
 
 
 def structures(step: Step) -> tuple[Structure, ...]:
@@ -187,84 +70,141 @@ def structures(step: Step) -> tuple[Structure, ...]:
     step : Step
         Base and accepted effects.
     """
-    return step.once(structures, lambda: _structures(step))
+    return tuple(one for one, _ in _with_columns(step))
 
 
-def _structures(step: Step) -> tuple[Structure, ...]:
-    problem = step.problem
-    axes = {
-        place: columns
-        for place, columns in axis_columns(problem).items()
-        if can_be_judged(problem, columns)
-    }
-    expected = expected_components(step)
-    known = step.precomputed.start
-    starts = replace(step.fit.variances, amplitude=known.amplitude), known
-    null = fit_variances(expected, step.products, step.known, *starts)
-    quiet = evaluate(expected, step.products, step.known, known)
-    accepted = [problem.basis(one.effect, one.shape) for one in step.accepted]
-    span = span_of(problem, [*step.precomputed.measurement, *accepted])
+def beside_others(
+    structure: Structure, others: Sequence[Structure], step: Step
+) -> Structure | None:
+    """Return structure as it is beside other structure of the same step; None where nothing is.
 
-    def judged(names: tuple[str, ...], channel: Channel, columns: Array) -> _Found | None:
-        zeros = np.zeros_like(columns)
-        basis = Basis(columns, zeros) if channel == "friction" else Basis(zeros, columns)
-        left = products_left_by(span, basis)
-        squares = float(np.trace(left))
-        if squares <= _ROUNDED * float(np.sum(np.square(columns))):
-            return None
-        scale = float(np.sqrt(len(columns) / squares))
-        fit = _beside_function(step, expected, basis, scale, (null, quiet))
-        place = slice(step.known, step.known + columns.shape[1])
-        size, interval = realised(
-            scale**2 * left / len(columns),
-            fit.coefficients[place],
-            fit.covariance_of(place),
-        )
-        return names, channel, null.objective - fit.objective, size, interval
+    What only imitates another is not significant beside it. A drift stays as it is.
 
-    by_place = {place: judged(*place, columns) for place, columns in axes.items()}
-    load, angle = (by_place.get(((name,), "friction")) for name in ("load", "position"))
-    least = _TOLD_BY_ANGLE if load is None else max(_TOLD_BY_ANGLE, load[2] - _TOLD_BY_ANGLE)
-    if load is not None and angle is not None and angle[2] > least:
-        count = axes[_LOAD].shape[1]
-        price = float(np.log(len(problem.layout.time)))
+    Parameters
+    ----------
+    structure : Structure
+        One of :func:`structures`.
+    others : sequence of Structure
+        Others of them.
+    step : Step
+        Base and accepted effects.
+    """
+    key = beside_others, structure, tuple(others)
+    return step.once(key, lambda: _beside_others(structure, others, step))
 
-        def carried(constant: float) -> _Found:
-            one = judged(*_LOAD, cosines(np.abs(problem.table.load - constant), count))
-            return load if one is None else (*one[:2], one[2] - price, *one[3:])
 
-        constant = most_likely_constant(problem, lambda one: carried(one)[2])
-        by_place[_LOAD] = max(load, carried(constant), key=lambda one: one[2])
-    of_load, of_angle = (by_place.get(one) for one in (_LOAD_AND_SPEED, _ANGLE_AND_SPEED))
-    if of_load is not None and of_angle is not None and of_load[2] > of_angle[2] + _TOLD_BY_ANGLE:
-        columns = angle_and_speed(problem)
-        enough = can_be_judged(problem, columns)
-        finer = judged(*_ANGLE_AND_SPEED, columns) if enough else None
-        if finer is not None and finer[2] > of_load[2] - _TOLD_BY_ANGLE:
-            # more functions may cancel the discrepancy's: the size is that of the fewer
-            by_place[_ANGLE_AND_SPEED] = (*finer[:3], *of_load[3:])
-    found = [(one, 1.0) for one in by_place.values() if one]
-    for number, channel in enumerate(CHANNELS):
-        drift = drift_beyond(step, expected, null, number)
-        found.append(
-            ((("time",), channel, drift.statistic, drift.size, drift.interval), drift.chance)
-        )
-    every = (
-        Structure(
-            axes=names,
-            channel=channel,
-            p_value=min(1.0, len(found) * min(chi2_tail(statistic, 1) / 2, chance)),
-            statistic=max(statistic, 0.0),
-            size=size,
-            interval=interval,
-        )
-        for (names, channel, statistic, size, interval), chance in found
+def _beside_others(
+    structure: Structure, others: Sequence[Structure], step: Step
+) -> Structure | None:
+    columns_of = dict(_with_columns(step))
+    columns = columns_of[structure]
+    if columns is None:
+        return structure
+    known = _known(step)
+    for other in others:
+        beside = columns_of[other]
+        channel = other.channel
+        added = known.with_any_drift(channel) if beside is None else known.beside(channel, beside)
+        known = added or known
+    left = known.judged(structure.channel, columns)
+    if left is None:
+        return None
+    return replace(
+        structure,
+        p_value=_p_value(left, len(columns_of)),
+        statistic=max(left.statistic, 0.0),
+        size=left.size,
+        interval=left.interval,
     )
 
-    def behind(one: Structure) -> float:
-        return -one.statistic + _TOLD_BY_ANGLE * (one.axes[0] == "load")
 
-    return tuple(sorted(every, key=behind))
+def _with_columns(step: Step) -> tuple[tuple[Structure, Array | None], ...]:
+    """Return the lack of fit along every axis and its columns, which a drift does not have."""
+    return step.once(_with_columns, lambda: _all_structures(step))
+
+
+def _known(step: Step) -> Known:
+    """Return what is judged along the axes beside base and accepted effects alone."""
+    return step.once(_known, lambda: Known.of(step, expected_components(step)))
+
+
+def _all_structures(step: Step) -> tuple[tuple[Structure, Array | None], ...]:
+    known = _known(step)
+    of_axes = _along_axes(step, known)
+    tests = len(of_axes) + len(CHANNELS)
+    found: list[tuple[Structure, Array | None]] = [
+        (_structure(place, one, _p_value(one, tests)), columns)
+        for place, (one, columns) in of_axes.items()
+    ]
+    for number, channel in enumerate(CHANNELS):
+        drift = drift_beyond(step, known.components, known.fits[0], number)
+        p_value = min(_p_value(drift.function, tests), tests * drift.chance)
+        found.append((_structure((("time",), channel), drift.function, p_value), None))
+
+    def behind(one: tuple[Structure, Array | None]) -> float:
+        return -one[0].statistic + TOLD_BY_ANGLE * (one[0].axes[0] == "load")
+
+    return tuple(sorted(found, key=behind))
+
+
+def _along_axes(step: Step, known: Known) -> dict[_Place, _Judged]:
+    """Return what is there along each axis, with the columns that show it."""
+    problem = step.problem
+    found: dict[_Place, _Judged] = {}
+
+    def judge(place: _Place, columns: Array) -> _Judged | None:
+        one = known.judged(place[1], columns)
+        return None if one is None else (one, columns)
+
+    for place, columns in axis_columns(problem).items():
+        one = judge(place, columns) if can_be_judged(problem, columns) else None
+        if one is not None:
+            found[place] = one
+    if _LOAD in found and _ANGLE in found:
+        load, angle = found[_LOAD][0], found[_ANGLE][0]
+        if angle.statistic > max(TOLD_BY_ANGLE, load.statistic - TOLD_BY_ANGLE):
+            found[_LOAD] = _along_carried(step, known, found[_LOAD])
+    if _LOAD_AND_SPEED in found and _ANGLE_AND_SPEED in found:
+        load, angle = found[_LOAD_AND_SPEED][0], found[_ANGLE_AND_SPEED][0]
+        columns = angle_and_speed(problem)
+        if load.statistic > angle.statistic + TOLD_BY_ANGLE and can_be_judged(problem, columns):
+            finer = judge(_ANGLE_AND_SPEED, columns)
+            if finer is not None and finer[0].statistic > load.statistic - TOLD_BY_ANGLE:
+                # more functions may cancel the discrepancy's: the size is that of the fewer
+                found[_ANGLE_AND_SPEED] = replace(load, statistic=finer[0].statistic), columns
+    return found
+
+
+def _along_carried(step: Step, known: Known, plain: _Judged) -> _Judged:
+    """Return friction along the load of the gear, if a constant in it is likely, else as it is."""
+    problem = step.problem
+    columns = plain[1]
+    price = float(np.log(len(problem.layout.time)))
+
+    def carried(constant: float) -> _Judged:
+        own = cosines(np.abs(problem.table.load - constant), columns.shape[1])
+        one = known.judged("friction", own)
+        return plain if one is None else (replace(one, statistic=one.statistic - price), own)
+
+    constant = most_likely_constant(problem, lambda one: carried(one)[0].statistic)
+    return max(plain, carried(constant), key=lambda one: one[0].statistic)
+
+
+def _structure(place: _Place, found: RandomFunction, p_value: float) -> Structure:
+    axes, channel = place
+    return Structure(
+        axes=axes,
+        channel=channel,
+        p_value=p_value,
+        statistic=max(found.statistic, 0.0),
+        size=found.size,
+        interval=found.interval,
+    )
+
+
+def _p_value(found: RandomFunction, tests: int) -> float:
+    """Return the probability that noise explains as much along one of so many axes."""
+    return min(1.0, tests * chi2_tail(found.statistic, 1) / 2)
 
 
 def expected_components(step: Step) -> Components:
@@ -283,33 +223,3 @@ def expected_components(step: Step) -> Components:
     free = np.array([one.axes == SPEED_RIPPLE for one in functions], bool)
     spread = np.where(free, components.spread, _PINNED)
     return replace(components, spread=spread, most_drift=(most**2, most**2))
-
-
-def _beside_function(
-    step: Step,
-    expected: Components,
-    basis: Basis,
-    scale: float,
-    nulls: tuple[MixedFit, ...],
-) -> MixedFit:
-    """Return the fit with one more random function, with the noise that suits it best.
-
-    It starts from fits without the function, with an amplitude that is likely beside each.
-    """
-    layout = step.problem.layout
-    columns = reduced(layout, scale * basis.friction, scale * basis.load)
-    products = step.products.beside([Part(columns, step.precomputed.noises)])
-    place = slice(step.known, step.known + columns.count)
-    amplitude = float(expected.prior[0]) if len(expected.prior) else _unit_amplitude(step)
-    components = expected.beside_function(place, amplitude)
-    likely = likely_amplitudes(components, products, nulls)
-    starts = (
-        replace(one.variances, amplitude=np.append(one.variances.amplitude, own))
-        for one, own in zip(nulls, likely, strict=True)
-    )
-    return fit_variances(components, products, place.stop, *starts)
-
-
-def _unit_amplitude(step: Step) -> float:
-    """Return the logarithm of the noise of a pair, where no discrepancy is expected."""
-    return float(np.log(step.precomputed.start.between[0]) / 2)

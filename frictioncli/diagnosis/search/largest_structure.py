@@ -17,7 +17,7 @@ from frictioncli.arrays import Array, Indices
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.axis_columns import load_over_angle, varying_axes
-from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.distributions import chi2_tail
 from frictioncli.effects.base import Channel
 

@@ -11,10 +11,10 @@ from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.judging import JudgedCauses, Judging, names_of
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.diagnosis.search.torque_scale import with_torque_scale
 from frictioncli.diagnosis.search.understood import structure_beside
 from frictioncli.diagnosis.search.without_a_name import (

@@ -32,11 +32,11 @@ from frictioncli.diagnosis.fit.hypotheses import EffectFit, HypothesisTest, phys
 from frictioncli.diagnosis.noise.significance import NullDistribution, log_bayes_factor
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.largest_structure import BETWEEN_DAYS
 from frictioncli.diagnosis.search.new_run import parts_of
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.new_run_torque import rivals_of_change, slow_torque
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.diagnosis.search.torque_scale import with_scale_on_new_run
 from frictioncli.effects.base import Basis, Effect
 from frictioncli.effects.drift import EFFECT as DRIFT

@@ -19,9 +19,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
-from frictioncli.diagnosis.search.lack_of_fit import Structure, structures
+from frictioncli.diagnosis.search.lack_of_fit import structures
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.distributions import chi2_tail
 
 _CHANCE = 0.05

@@ -11,11 +11,11 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.confounded import confounded, unclaimed
 from frictioncli.diagnosis.search.detectable_size import SHAPES, Rules, detectable_size
 from frictioncli.diagnosis.search.effect_size import sizes_of
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.planted_rivals import PlantedRivals
 from frictioncli.diagnosis.search.planted_torque import error_forms
 from frictioncli.diagnosis.search.standing import level_of
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.base import Effect
 

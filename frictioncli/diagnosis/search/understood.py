@@ -6,8 +6,9 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.confounded import goes_with_temperature
-from frictioncli.diagnosis.search.lack_of_fit import Structure, unnamed_structure
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
+from frictioncli.diagnosis.search.structure_above_margin import unnamed_structure
 from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
 
 MOST_LEFT = 1 / 3

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.lack_of_fit import Structure
 from frictioncli.diagnosis.search.margin import strength
 from frictioncli.diagnosis.search.measurement import CLEAR
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.effects.inertia import EFFECT as INERTIA
 from frictioncli.effects.sensor_lag import EFFECT as SENSOR_LAG
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG

@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
-from frictioncli.diagnosis.search.lack_of_fit import Structure
+from frictioncli.diagnosis.search.structure import Structure
 
 
 def beyond_doubt_without_a_name(
