@@ -178,6 +178,11 @@ def structure_of(size, *axes, channel="friction"):
         ("step_change", structure_of(0.9, "temperature"), False),
         ("step_change", structure_of(0.4, "time"), True),
         ("step_change", structure_of(5.0, "temperature", channel="load"), False),
+        # so may what follows the temperature, which varies slowly, of something along the time
+        ("coulomb_temperature", structure_of(1.1, "time"), True),
+        ("coulomb_temperature", structure_of(0.9, "time"), False),
+        ("coulomb_temperature", structure_of(5.0, "position", "time"), False),
+        ("stribeck", structure_of(5.0, "time"), False),
         ("payload_change", structure_of(5.0, "temperature"), False),
         ("torque_delay", structure_of(5.0, "position"), False),
     ],

@@ -22,7 +22,8 @@ of it: then the cause is not understood."""
 
 _MOST_BESIDE = 1.0
 """Structure along any axis that is greater than this share of a change of friction says the same:
-what comes and goes at some moments may be a part of anything that varies slowly."""
+what comes and goes at some moments may be a part of anything that varies slowly. So may what
+follows the temperature, which varies slowly with time, of structure along the time."""
 
 _AXES = {
     "clock": "time",
@@ -42,8 +43,8 @@ def understood(
     """Return the causes that are named, and the structure without a name that is left.
 
     A cause loses its name to structure along its own axis that is nearly as large, or along the
-    temperature if it goes with that, and a change of friction to any that is larger: both may be
-    one thing that no effect explains. The structure is then what is left without it.
+    temperature if it goes with that, a change of friction to any that is larger, and what follows
+    the temperature to a larger one along the time: both may be one thing that no effect explains. The structure is then what is left without it.
 
     Parameters
     ----------
@@ -121,5 +122,6 @@ def is_part(fit: EffectFit, visible: float, unnamed: Structure, problem: Problem
     if goes_with_temperature(fit, problem):
         along.add("temperature")
     if along.isdisjoint(_AXES.get(one, one) for one in unnamed.axes):
-        return effect is STEP_CHANGE and unnamed.size > _MOST_BESIDE * visible
+        is_slow = effect is STEP_CHANGE or ("temperature" in along and unnamed.axes == ("time",))
+        return is_slow and unnamed.size > _MOST_BESIDE * visible
     return unnamed.size > MOST_LEFT * visible
