@@ -154,9 +154,7 @@ def _diagnosed(
         weighted_fit = beside_the_rest(problem, weighted_fit, named.measurement, fits)
         extension = extend(problem, weighted_fit, fits)
         if lag is not None:
-            lag, extension = settled(
-                lag, fits, lambda rows, among: extend(rows, weighted_fit, among)
-            )
+            lag, extension = settled(lag, fits, weighted_fit)
             problem, new = lag.problem, lag.new
         causes = sizes_in_model(causes, extension, step, named.measurement, base, found.refused)
     appeared: tuple[Cause, ...] = ()

@@ -16,7 +16,7 @@ from frictioncli.diagnosis.search.new_run_rivals import refuted_by_return, witho
 from frictioncli.diagnosis.search.preparation import Preparation
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.thermal.lag_search import search_with_lag
-from frictioncli.diagnosis.thermal.refine import LAG, RefinedLag
+from frictioncli.diagnosis.thermal.refine import LAG, RefinedLag, missed_with_lag
 from frictioncli.effects.base import Effect
 
 
@@ -118,8 +118,9 @@ def _not_refuted(
         judged = replace(judged, causes=kept)
     if judging.new is not None and new is not None and lag is not None:
         # nothing else may take its place: the runs seen show it
-        rows = judging.problem, judging.new
-        reason = refuted_lag(judged.named, found.step, rows, (base, new))
+        weighted_fit = found.step.predicting_fit()
+        missed = partial(missed_with_lag, lag, weighted_fit)
+        reason = refuted_lag(judged.named, found.step, missed, (base, new))
         if reason:
             judged = judged.without_names({LAG}, "visible", reason)
     return FoundCauses(search=found, judged=judged, judging=judging, lag=lag, refuted=refuted)

@@ -162,6 +162,24 @@ def test_a_change_in_one_direction_that_is_beyond_doubt_is_structure_along_time(
     assert change_over_time([replace(one, shown=Shown())]) is None
 
 
+def test_a_lag_that_a_new_run_refutes_is_structure_along_time():
+    """What it describes on the runs seen is there, whatever it is."""
+    _, cause = accepted(problem(3, friction=SHORT))
+    one = replace(
+        cause,
+        fit=replace(cause.fit, effect=replace(BY_NAME["thermal_lag"])),
+        test=SimpleNamespace(p_value=1e-9, statistic=50.0),
+        standing="visible",
+    )
+    low, _ = one.visible_interval
+    assert beyond_doubt_without_a_name([one], [], low / 2) == (one,)
+    structure = change_over_time([one])
+    assert (structure.axes, structure.channel) == (("time",), "friction")
+    assert structure.size == one.visible
+    # not determined: days may differ
+    assert change_over_time([replace(one, standing="undetermined")]) is None
+
+
 def structure_of(size, *axes, channel="friction"):
     return SimpleNamespace(size=size, axes=axes, channel=channel)
 

@@ -6,7 +6,7 @@ extended model does not predict it there. A cause that the new run contradicts i
 that makes its prediction worse.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from frictioncli.diagnosis.data.problem import Problem
@@ -147,7 +147,7 @@ def refuted_by_new_run(causes: Sequence[Cause], step: Step, new: Problem) -> tup
 def refuted_lag(
     causes: Sequence[Cause],
     step: Step,
-    rows: tuple[Problem, Problem],
+    missed_with: Callable[[Sequence[EffectFit]], float],
     measured: tuple[Problem, Problem],
 ) -> str:
     """Return why a lag of the gear makes the prediction of a new run worse; empty if it does not.
@@ -161,19 +161,17 @@ def refuted_lag(
         Causes that are named, judged on the new run.
     step : Step
         The last step of the search.
-    rows : (Problem, Problem)
-        The rows seen, and those of a new run, about the temperature of the gear.
+    missed_with : callable
+        RMS misfit of a new run by the model with a lag, of which some effects are a part. [N·m]
     measured : (Problem, Problem)
-        The same about the measured temperature.
+        The rows seen, and those of the new run, about the measured temperature.
     """
-    weighted_fit = step.predicting_fit()
     among = [one for one in causes if one.standing == "named"]
     others = [one.fit for one in among if one.fit.effect.name != THERMAL_LAG.name]
     if len(others) == len(among):
         return ""
-    with_lag = missed_of_new_run([one.fit for one in among], *rows, weighted_fit)
-    without = missed_of_new_run(others, *measured, weighted_fit)
-    times = with_lag / without
+    without = missed_of_new_run(others, *measured, step.predicting_fit())
+    times = missed_with([one.fit for one in among]) / without
     return _MADE_WORSE.format(times=times) if times > _WORSE_WITH_LAG else ""
 
 

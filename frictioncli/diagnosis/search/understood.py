@@ -43,8 +43,9 @@ def understood(
     """Return the causes that are named, and the structure without a name that is left.
 
     A cause loses its name to structure along its own axis that is nearly as large, or along the
-    temperature if it goes with that, a change of friction to any that is larger, and what follows
-    the temperature to a larger one along the time: both may be one thing that no effect explains. The structure is then what is left without it.
+    temperature if it goes with that; a change of friction to any that is larger; and what follows
+    the temperature to a larger one along the time. Both may be one thing that no effect explains.
+    The structure is then what is left without the cause.
 
     Parameters
     ----------

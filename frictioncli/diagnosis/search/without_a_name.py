@@ -5,6 +5,7 @@ from collections.abc import Collection, Sequence
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.structure import Structure
+from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 
 def beyond_doubt_without_a_name(
@@ -12,8 +13,8 @@ def beyond_doubt_without_a_name(
 ) -> tuple[Cause, ...]:
     """Return the properties of the joint without a name that are there beyond doubt.
 
-    They are physically impossible as effects of the catalogue, or not determined, but they are not
-    nothing.
+    They are physically impossible as effects of the catalogue, or not determined, or a new run
+    contradicts them, but they are not nothing.
 
     Parameters
     ----------
@@ -27,7 +28,7 @@ def beyond_doubt_without_a_name(
     return tuple(
         one
         for one in causes
-        if one.standing == "undetermined"
+        if one.standing in ("undetermined", "visible")
         and one.fit.effect.name not in named
         and not one.fit.effect.measurement
         and one.test.p_value < BEYOND_DOUBT
@@ -38,14 +39,20 @@ def beyond_doubt_without_a_name(
 def change_over_time(causes: Sequence[Cause]) -> Structure | None:
     """Return a change of the torque in one direction as structure along time; None without one.
 
-    One that comes and goes from pair to pair is not smooth enough to be found as structure.
+    One that comes and goes from pair to pair is not smooth enough to be found as structure. What a
+    lag of the gear describes on the runs seen alone varies with time, too.
 
     Parameters
     ----------
     causes : sequence of Cause
         What is there beyond doubt and has no name.
     """
-    changes = [one for one in causes if one.shown.one_direction]
+    changes = [
+        one
+        for one in causes
+        if one.shown.one_direction
+        or (one.fit.effect.name == THERMAL_LAG.name and one.standing == "visible")
+    ]
     if not changes:
         return None
     one = max(changes, key=lambda cause: cause.test.statistic)

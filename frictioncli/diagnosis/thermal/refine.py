@@ -1,6 +1,6 @@
 """A problem made linear about the hidden temperature, once a lag of the gear has been accepted."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -8,8 +8,9 @@ import numpy as np
 
 from frictioncli.diagnosis.data.build_problem import at_temperature
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.fit.extension import Extension
+from frictioncli.diagnosis.fit.extension import Extension, Refit, extend, refit, rms_misfit
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.thermal.estimate import ThermalEstimate, estimate_temperature
 from frictioncli.effects.base import (
     Basis,
@@ -141,7 +142,7 @@ def _restricted_basis(parts: tuple[int, ...], table: EffectTable, **shape: float
 def settled(
     refined: RefinedLag,
     effects: Sequence[EffectFit],
-    extend: Callable[[Problem, Sequence[EffectFit]], Extension],
+    weighted_fit: WeightedFit,
 ) -> tuple[RefinedLag, Extension]:
     """Return an extension at the estimated temperature, and the problems linear about it.
 
@@ -156,15 +157,15 @@ def settled(
         The problems at the estimated temperature.
     effects : sequence of EffectFit
         Effects of the extension, the lag among them.
-    extend : callable
-        Returns the extension of a problem by effects.
+    weighted_fit : WeightedFit
+        Weights of the rows.
     """
     place = [one.effect.name for one in effects].index(LAG)
     others = [one for one in effects if one.effect.name != LAG]
-    free = extend(refined.problem, effects)
+    free = extend(refined.problem, weighted_fit, effects)
     limit = _SETTLED * np.maximum(free.errors[: len(free.changes)], _LEAST_ERROR)
     for _ in range(_MOST_STEPS):
-        held = extend(_with_lag_taken_off(refined.problem), others)
+        held = refit(_with_lag_taken_off(refined.problem), weighted_fit, others)
         refined = _moved(refined, held)
         if np.all(np.abs(held.changes) <= limit):
             break
@@ -176,6 +177,29 @@ def settled(
     )
 
 
+def missed_with_lag(
+    refined: RefinedLag, weighted_fit: WeightedFit, effects: Sequence[EffectFit]
+) -> float:
+    """Return the RMS misfit of the hold-out run by the extension at the temperature [N·m].
+
+    Parameters
+    ----------
+    refined : RefinedLag
+        The problems at the estimated temperature.
+    weighted_fit, effects
+        As of :func:`settled`.
+
+    Raises
+    ------
+    ValueError
+        If there is no hold-out run.
+    """
+    about, extension = settled(refined, effects, weighted_fit)
+    if about.new is None:
+        raise ValueError("no run was held out")
+    return rms_misfit(about.new, extension)
+
+
 def _with_lag_taken_off(problem: Problem) -> Problem:
     """Return a problem whose measured friction has the torque of the lag taken off."""
     table = problem.table
@@ -183,7 +207,7 @@ def _with_lag_taken_off(problem: Problem) -> Problem:
     return replace(problem, friction=problem.friction - torque)
 
 
-def _moved(refined: RefinedLag, extension: Extension) -> RefinedLag:
+def _moved(refined: RefinedLag, extension: Refit) -> RefinedLag:
     """Return the problems at the parameters of an extension, at the same temperature."""
     problem, new = refined.problem, refined.new
     about = {
