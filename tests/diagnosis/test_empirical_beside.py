@@ -72,6 +72,21 @@ def test_a_form_is_structure_where_no_property_of_the_joint_is_named():
         assert one is None or one.axes == ("temperature",)
 
 
+def test_structure_that_a_term_shows_is_as_large_as_in_the_term():
+    """The test along the axis takes off what any model's small errors may be of it."""
+    empirical, _ = with_peak()
+    step = Step.of(Precomputed.of(problem(3, friction=warm_peak)), [])
+    axes = (("temperature",), "friction")
+    tested = next(one for one in structures(step) if (one.axes, one.channel) == axes)
+    part = replace(empirical.parts[0], size=2 * tested.size, interval=(0.1, 9.0))
+    smooth = replace(empirical, p_value=None, parts=(part,))
+    one = unexplained(None, (), smooth, step, 0.05)
+    assert one == replace(tested, size=part.size, interval=part.interval)
+    # the term has none along that axis
+    elsewhere = replace(smooth, parts=(replace(part, axes=("speed",)),))
+    assert unexplained(None, (), elsewhere, step, 0.05) == tested
+
+
 @pytest.mark.parametrize(
     ("fading", "axes"), [(25.0, ("position", "speed")), (np.inf, ("position",))]
 )

@@ -55,8 +55,10 @@ def unexplained(
     if empirical.p_value is not None:
         return _of_largest(empirical, empirical.p_value, empirical.statistic)
     along = unnamed_structure(step, 0.0, alpha)
-    if along is not None or empirical.gain.basis != "new_run":
-        return along
+    if along is not None:
+        return _as_large_as(along, empirical)
+    if empirical.gain.basis != "new_run":
+        return None
     statistic = _statistic(empirical.gain)
     p_value = chi2_tail(statistic, 1)
     return _of_largest(empirical, p_value, statistic) if p_value < BEYOND_DOUBT else None
@@ -73,6 +75,18 @@ def _of_largest(empirical: Empirical, p_value: float, statistic: float) -> Struc
         size=largest.size,
         interval=largest.interval,
     )
+
+
+def _as_large_as(structure: Structure, empirical: Empirical) -> Structure:
+    """Return structure with the size that a term has along the same axes, if it has them.
+
+    The test along an axis takes off what any model's small errors may be of it: that may be most of
+    what is known to be there.
+    """
+    for part in empirical.parts:
+        if (part.axes, part.channel) == (structure.axes, structure.channel):
+            return replace(structure, size=part.size, interval=part.interval)
+    return structure
 
 
 def _statistic(gain: Gain) -> float:
