@@ -13,6 +13,7 @@ from frictioncli.diagnosis.documents.sentences import (
     note_text,
     size_text,
     standing_text,
+    worse_text,
 )
 from frictioncli.report.effect_explanations import explained
 from frictioncli.report.model_section import poorly_determined
@@ -251,8 +252,8 @@ def gain_sentence(document: DiagnosisDocument, unit: str) -> str:
     if gain.basis != "new_run":
         further = "a second" if document.held_out is None else "another"
         text += f" A gain on its own training data is optimistic; log {further} run to test it."
-    if high < 0:
-        text += " The extended model is worse than the base model: do not use it."
+    if worse := worse_text(gain, unit):
+        text += f" {worse}"
     elif low <= 0:
         text += " The interval includes zero: the extended model may be no better."
     return text

@@ -259,7 +259,7 @@ def test_files_have_the_keys_of_the_contract(work):
     assert {"effects", "probabilities", "channel", "claim", "equation", "parameters"} <= set(cause)
     assert {"size", "p_value", "seen_in", "figure", "experiment"} <= set(cause)
     gain = {"basis", "rmse_before", "rmse_after", "reduction", "ci95", "noise_floor"}
-    assert set(found["gain"]) == gain
+    assert set(found["gain"]) == gain | {"rmse_without_level"}
     assert {"rmse", "worst"} <= set(found["simulation"])
     assert found["settings"]["alpha"] == 0.05
 

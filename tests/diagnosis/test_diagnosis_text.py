@@ -1,10 +1,17 @@
 """What the terminal says of a diagnosis."""
 
+import pytest
 from msgspec import structs
 
+from frictioncli.diagnosis.documents.document import GainRecord
 from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord, LocatedRecord
 from frictioncli.diagnosis.documents.remainder_record import RemainderRecord
-from frictioncli.diagnosis.documents.sentences import empirical_text, lasting_text, size_text
+from frictioncli.diagnosis.documents.sentences import (
+    empirical_text,
+    lasting_text,
+    size_text,
+    worse_text,
+)
 from frictioncli.diagnosis.documents.text import verdict_text
 from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE
 from tests.report.diagnosis_documents import cause, diagnosis
@@ -170,3 +177,37 @@ def test_the_larger_parts_of_an_empirical_term_are_told_with_their_sizes():
         "An empirical term for the smooth error that any model has reduces the misfit on pairs not"
         " used for fitting from 0.80 to 0.50 N·m (RMS): 40 % less (30 to 50). It names no cause"
     )
+
+
+@pytest.mark.parametrize(
+    ("ci95", "without_level", "said"),
+    [
+        ((-0.4, 0.1), (0.4, 0.3), ""),
+        ((-0.4, -0.2), None, "The extended model is worse than the base model: do not use it."),
+        (
+            (-0.4, -0.2),
+            (0.3, 0.4),
+            "The extended model is worse than the base model: do not use it.",
+        ),
+        (
+            (-0.4, -0.2),
+            (0.4, 0.31),
+            "The extended model is worse than the base model: do not use it. Apart from torque that"
+            " is the same over the whole run it is better: 0.31 instead of 0.40 N·m.",
+        ),
+    ],
+)
+def test_a_model_that_is_surely_worse_is_said_to_be(ci95, without_level, said):
+    """A day with another level of friction may hide what a cause gains."""
+    gain = GainRecord(
+        basis="new_run",
+        rmse_before=0.5,
+        rmse_after=0.6,
+        reduction=-0.2,
+        ci95=ci95,
+        noise_floor=0.1,
+        rmse_without_level=without_level,
+    )
+    (line,) = (one for one in lines(gain=gain) if one.startswith("extended model"))
+    assert line.endswith(f"noise floor 0.1 N·m{said and '. '}{said}")
+    assert worse_text(gain, "N·m") == said

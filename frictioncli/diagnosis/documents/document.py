@@ -153,6 +153,9 @@ class GainRecord(msgspec.Struct, frozen=True, kw_only=True):
         95 % confidence interval of the reduction. [1]
     noise_floor : float
         RMS of the noise, which no model can predict. [torque unit]
+    rmse_without_level : (float, float) or null
+        The two misfits without the mean of each: apart from what is the same over the whole run.
+        [torque unit]
     """
 
     basis: str
@@ -161,6 +164,7 @@ class GainRecord(msgspec.Struct, frozen=True, kw_only=True):
     reduction: float
     ci95: tuple[float, float]
     noise_floor: float
+    rmse_without_level: tuple[float, float] | None = None
 
 
 class SimulationRecord(msgspec.Struct, frozen=True, kw_only=True):

@@ -94,6 +94,7 @@ def diagnosis_document(
             reduction=gain.reduction,
             ci95=gain.interval,
             noise_floor=gain.floor,
+            rmse_without_level=gain.without_level,
         ),
         empirical=empirical_record(diagnosis),
         discrepancy=discrepancy_record(diagnosis),

@@ -1,6 +1,11 @@
 """What a diagnosis found, sentence by sentence, as terminal and page say it."""
 
-from frictioncli.diagnosis.documents.document import OTHER_JOINT, CauseRecord, DiagnosisDocument
+from frictioncli.diagnosis.documents.document import (
+    OTHER_JOINT,
+    CauseRecord,
+    DiagnosisDocument,
+    GainRecord,
+)
 from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord
 from frictioncli.diagnosis.search.effect_size import TAKEN_BY_BASE
 from frictioncli.diagnosis.search.margin import LEAST_MARGIN
@@ -293,3 +298,27 @@ def p_value_text(p_value: float) -> str:
 
 def _runs_text(runs: tuple[str, ...]) -> str:
     return f"run {runs[0]}" if len(runs) == 1 else f"runs {list_text(runs)}"
+
+
+def worse_text(gain: GainRecord, unit: str) -> str:
+    """Return what follows from an extended model that is surely worse; empty if it is not.
+
+    Friction differs from day to day. Where a model is better apart from that, its causes hold.
+
+    Parameters
+    ----------
+    gain : GainRecord
+        The gain.
+    unit : str
+        Unit of torque.
+    """
+    if gain.ci95[1] >= 0:
+        return ""
+    text = "The extended model is worse than the base model: do not use it."
+    before, after = gain.rmse_without_level or (0.0, 0.0)
+    if after >= before:
+        return text
+    return (
+        f"{text} Apart from torque that is the same over the whole run it is better:"
+        f" {number_text(after, 2)} instead of {number_text(before, 2)} {unit}."
+    )

@@ -20,6 +20,7 @@ from frictioncli.diagnosis.documents.sentences import (
     settling_text,
     size_text,
     standing_text,
+    worse_text,
 )
 from frictioncli.wording import list_text, probability_text
 
@@ -99,8 +100,9 @@ def _gain_text(gain: GainRecord, document: DiagnosisDocument) -> str:
         else "on its own training data (optimistic)"
     )
     low, high = map(percent_text, gain.ci95)
+    worse = worse_text(gain, unit)
     return (
         f"extended model: {gain.rmse_before:.3g} -> {gain.rmse_after:.3g} {unit} {where}, a gain of"
         f" {100 * gain.reduction:.0f} % ({low} to {high});"
-        f" noise floor {gain.noise_floor:.2g} {unit}"
+        f" noise floor {gain.noise_floor:.2g} {unit}{worse and f'. {worse}'}"
     )

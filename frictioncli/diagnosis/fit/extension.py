@@ -315,6 +315,9 @@ def measured_gain(
     seed : int
         Seed of the block bootstrap.
     """
-    before = base.squared(base.friction_misfit, base.load_misfit)
-    after = problem.squared(*misfits(problem, extension))
-    return gain_of(problem, before, after, basis=basis, floor=floor, seed=seed)
+    missed = (base.friction_misfit, base.load_misfit), misfits(problem, extension)
+    before, after = (problem.squared(*both) for both in missed)
+    gain = gain_of(problem, before, after, basis=basis, floor=floor, seed=seed)
+    varying = (problem.squared(*(one - one.mean() for one in both)) for both in missed)
+    first, last = (float(np.sqrt(np.mean(square))) for square in varying)
+    return replace(gain, without_level=(first, last))

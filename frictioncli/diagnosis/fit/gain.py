@@ -30,6 +30,8 @@ class Gain:
         95 % interval of the reduction.
     floor : float
         RMS of the noise that is new with each pair, which no model can predict. [N·m]
+    without_level : (float, float), optional
+        The misfits before and after, each without its mean in both channels. [N·m]
     """
 
     basis: str
@@ -38,6 +40,7 @@ class Gain:
     reduction: float
     interval: tuple[float, float]
     floor: float
+    without_level: tuple[float, float] | None = None
 
 
 def gain_of(
