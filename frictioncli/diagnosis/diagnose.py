@@ -47,6 +47,7 @@ from frictioncli.effects.payload_change import EFFECT as PAYLOAD_CHANGE
 from frictioncli.effects.torque_scale import EFFECT as TORQUE_SCALE
 from frictioncli.errors import NotEnoughData
 from frictioncli.logs.runs.run_order import runs_in_order
+from frictioncli.model.zero_load import with_temperature
 
 LEAST_PAIRS = 12
 """With fewer pairs noise cannot be distinguished from structure."""
@@ -86,12 +87,14 @@ def diagnose_joint(
     NotEnoughData
         If there are too few pairs.
     """
-    return without_needless_steps(
+    known, lost = with_temperature(torques, temperature)
+    found = without_needless_steps(
         lambda catalogue: _diagnosed(
-            torques, temperature, torque_unit, settings, catalogue, ramps, doubt
+            known, temperature, torque_unit, settings, catalogue, ramps, doubt
         ),
         effects,
     )
+    return replace(found, without_temperature=lost)
 
 
 def _diagnosed(

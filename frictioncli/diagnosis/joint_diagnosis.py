@@ -66,6 +66,8 @@ class Diagnosis:
         The margin of what shows in a load channel of the log; none without one. [N·m]
     settling : Settling or None
         Bins that were left out because the logged torque had not settled.
+    without_temperature : int
+        Number of pairs that were left out because the log has no temperature of them.
     empirical : Empirical or None
         A term for what is left without a known cause; none where it is not worth using.
     """
@@ -95,4 +97,5 @@ class Diagnosis:
     timing: TimingRivals | None = None
     load_margin: float | None = None
     settling: Settling | None = None
+    without_temperature: int = 0
     empirical: Empirical | None = None

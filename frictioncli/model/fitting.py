@@ -19,6 +19,7 @@ from frictioncli.model.late_torque import (
 from frictioncli.model.observations import observations
 from frictioncli.model.paper_method import consecutive_fit
 from frictioncli.model.settings import LEAST_OPPOSING, LEAST_PAIRS, FitSettings, not_opposing
+from frictioncli.model.zero_load import temperature_of, with_temperature
 from frictioncli.wording import count_text, quantity_text
 
 _LATE = (
@@ -150,16 +151,15 @@ def _with_temperature(
     torques: pd.DataFrame, kind: str, joint: int
 ) -> tuple[pd.DataFrame, list[str]]:
     """Return the rows with a known temperature, and notes on the others."""
-    columns = {"motor": ["motor_temperature"], "housing": ["housing_temperature"]}.get(
-        kind, ["motor_temperature", "housing_temperature"]
-    )
-    usable = torques[columns].notna().all(axis=1)
-    if usable.all():
-        return torques, []
-    if usable.any():
-        lost = torques.loc[~usable].groupby(["run", "pair"], observed=True).ngroups
-        return torques[usable], [f"{lost} pairs without {kind} temperature were not used"]
+    known, lost = with_temperature(torques, kind)
+    if lost:
+        return known, [f"{lost} pairs without {kind} temperature were not used"]
+    if temperature_of(known, kind).notna().all():
+        return known, []
     if kind != "motor":
+        columns = {"housing": ["housing_temperature"]}.get(
+            kind, ["motor_temperature", "housing_temperature"]
+        )
         raise NotEnoughData(
             f"joint {joint}: the log has no {' and '.join(columns)}, which --temperature {kind}"
             " needs; use --temperature motor"

@@ -45,6 +45,24 @@ def friction_at_zero_load(torques: pd.DataFrame, alpha: float) -> pd.DataFrame:
     return pairs.reset_index().sort_values(["run", "joint", "time"], ignore_index=True)
 
 
+def with_temperature(rows: pd.DataFrame, kind: str) -> tuple[pd.DataFrame, int]:
+    """Return the rows with a known temperature, and of how many pairs it is not.
+
+    Where no row has one, all are returned: friction is then a function of speed and load alone.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Rows of :data:`frictioncli.schemas.TORQUES`.
+    kind : {"motor", "housing", "mean"}
+        As of :func:`temperature_of`.
+    """
+    usable = temperature_of(rows, kind).notna()
+    if usable.all() or not usable.any():
+        return rows, 0
+    return rows[usable], int(rows.loc[~usable].groupby(PAIR_KEY, observed=True).ngroups)
+
+
 def temperature_of(pairs: pd.DataFrame, kind: str) -> pd.Series:
     """Return the temperature that the friction function is given: motor, housing or their mean.
 

@@ -10,8 +10,8 @@ from frictioncli.diagnosis.documents.reload import Reloaded
 from frictioncli.diagnosis.documents.remainder_words import remainder_text
 from frictioncli.diagnosis.documents.sentences import (
     empirical_text,
+    left_out_text,
     margin_text,
-    settling_text,
 )
 from frictioncli.report.challenge_section import PlantedText, planted_text
 from frictioncli.report.diagnosis_captions import (
@@ -107,7 +107,7 @@ def diagnosis_section(results: JointResults) -> DiagnosisSection:
         remainder=remainder_text(document),
         empirical=empirical_text(document),
         margin=margin_text(document),
-        settling=settling_text(document),
+        settling=left_out_text(document),
         gain=gain_sentence(document, unit),
         worst=worst if worst.rows else None,
         detectable=detectable_table(document, unit),

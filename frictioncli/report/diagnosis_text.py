@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.extended_document import ParameterRecord
+from frictioncli.diagnosis.documents.gain_text import worse_text
 from frictioncli.diagnosis.documents.remainder_words import extent, variation
 from frictioncli.diagnosis.documents.sentences import (
     alternatives_text,
@@ -13,7 +14,6 @@ from frictioncli.diagnosis.documents.sentences import (
     note_text,
     size_text,
     standing_text,
-    worse_text,
 )
 from frictioncli.report.effect_explanations import explained
 from frictioncli.report.model_section import poorly_determined

@@ -230,6 +230,24 @@ def test_too_few_pairs_are_named():
         diagnosed(rows[(rows["run"] == "day1") & (rows["pair"] < 8)])
 
 
+def test_pairs_without_a_temperature_are_left_out_and_counted():
+    """A sensor that failed for some pairs; a temperature of zero would be wrong by far."""
+    rows = days(1)
+    failed = (rows["run"] == "day1") & (rows["pair"] % 5 == 0)
+    some = diagnosed(rows.assign(motor_temperature=rows["motor_temperature"].mask(failed)))
+    count = rows[failed].groupby("pair").ngroups
+    assert count > 5
+    assert some.without_temperature == count
+    assert f"left out: {count} pairs without temperature" in said(some)
+    without = diagnosed(rows[~failed])
+    assert (some.verdict, some.rmse) == (without.verdict, without.rmse)
+    assert without.without_temperature == 0
+    # the held-out run is the last one with a temperature
+    last = rows["run"] == "day2"
+    alone = diagnosed(rows.assign(motor_temperature=rows["motor_temperature"].mask(last)))
+    assert (alone.runs, alone.held_out) == (("day1",), None)
+
+
 @pytest.mark.parametrize("wrong", [{"alpha": 0.0}, {"most": 5}])
 def test_senseless_settings_are_refused(wrong):
     with pytest.raises(OptionError, match="expected"):

@@ -5,12 +5,12 @@ from msgspec import structs
 
 from frictioncli.diagnosis.documents.document import GainRecord
 from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord, LocatedRecord
+from frictioncli.diagnosis.documents.gain_text import worse_text
 from frictioncli.diagnosis.documents.remainder_record import RemainderRecord
 from frictioncli.diagnosis.documents.sentences import (
     empirical_text,
     lasting_text,
     size_text,
-    worse_text,
 )
 from frictioncli.diagnosis.documents.text import verdict_text
 from frictioncli.diagnosis.search.effect_size import LACKING, TAKEN_BY_BASE

@@ -220,6 +220,8 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
         What the ramps show; none where the log has no ramps.
     settling : Settling or None
         Bins that were left out because the logged torque had not settled; none where none were.
+    without_temperature : int
+        Number of pairs that were left out because the log has no temperature of them.
     torque_unit : str
         Unit of torque.
     load_unit : str or None
@@ -248,6 +250,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     simulation: SimulationRecord
     ramps: RampsRecord | None = None
     settling: Settling | None = None
+    without_temperature: int = 0
     torque_unit: str
     load_unit: str | None = None
     runs: tuple[str, ...]

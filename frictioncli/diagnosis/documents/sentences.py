@@ -4,7 +4,6 @@ from frictioncli.diagnosis.documents.document import (
     OTHER_JOINT,
     CauseRecord,
     DiagnosisDocument,
-    GainRecord,
 )
 from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord
 from frictioncli.diagnosis.search.effect_size import TAKEN_BY_BASE
@@ -130,23 +129,24 @@ def note_text(cause: CauseRecord) -> str:
     return cause.statement if OTHER_JOINT in cause.effects else ""
 
 
-def settling_text(document: DiagnosisDocument) -> str:
-    """Return what was left out because the logged torque had not settled; empty if nothing was.
+def left_out_text(document: DiagnosisDocument) -> str:
+    """Return what the diagnosis has not used; empty if it has used everything.
 
     Parameters
     ----------
     document : DiagnosisDocument
         The joint's diagnosis.
     """
-    settling = document.settling
-    if settling is None:
-        return ""
-    pairs = f", among them all of {settling.pairs} pairs" if settling.pairs else ""
-    return (
-        f"left out: {settling.bins} angle bins{pairs} in the first {settling.seconds:.2g} s of"
-        " a move at constant speed, where the delayed or filtered torque still contains the"
-        " acceleration"
-    )
+    parts = []
+    if document.without_temperature:
+        parts.append(f"{document.without_temperature} pairs without temperature")
+    if settling := document.settling:
+        pairs = f", among them all of {settling.pairs} pairs" if settling.pairs else ""
+        parts.append(
+            f"{settling.bins} angle bins{pairs} in the first {settling.seconds:.2g} s of a move at"
+            " constant speed, where the delayed or filtered torque still contains the acceleration"
+        )
+    return f"left out: {'; '.join(parts)}" if parts else ""
 
 
 def percent_text(share: float) -> str:
@@ -298,27 +298,3 @@ def p_value_text(p_value: float) -> str:
 
 def _runs_text(runs: tuple[str, ...]) -> str:
     return f"run {runs[0]}" if len(runs) == 1 else f"runs {list_text(runs)}"
-
-
-def worse_text(gain: GainRecord, unit: str) -> str:
-    """Return what follows from an extended model that is surely worse; empty if it is not.
-
-    Friction differs from day to day. Where a model is better apart from that, its causes hold.
-
-    Parameters
-    ----------
-    gain : GainRecord
-        The gain.
-    unit : str
-        Unit of torque.
-    """
-    if gain.ci95[1] >= 0:
-        return ""
-    text = "The extended model is worse than the base model: do not use it."
-    before, after = gain.rmse_without_level or (0.0, 0.0)
-    if after >= before:
-        return text
-    return (
-        f"{text} Apart from torque that is the same over the whole run it is better:"
-        f" {number_text(after, 2)} instead of {number_text(before, 2)} {unit}."
-    )

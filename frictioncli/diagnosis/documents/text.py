@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from frictioncli.diagnosis.documents.document import (
     CauseRecord,
     DiagnosisDocument,
-    GainRecord,
 )
+from frictioncli.diagnosis.documents.gain_text import gain_text
 from frictioncli.diagnosis.documents.remainder_words import remainder_text
 from frictioncli.diagnosis.documents.sentences import (
     chance_text,
@@ -14,13 +14,11 @@ from frictioncli.diagnosis.documents.sentences import (
     empirical_text,
     finding_text,
     lasting_text,
+    left_out_text,
     margin_text,
     note_text,
-    percent_text,
-    settling_text,
     size_text,
     standing_text,
-    worse_text,
 )
 from frictioncli.wording import list_text, probability_text
 
@@ -49,11 +47,11 @@ def verdict_text(document: DiagnosisDocument) -> str:
         lines.append("no cause is named" if document.visible else "no cause found")
     lines += [line for cause in document.visible for line in _visible_lines(cause, document)]
     if document.gain is not None:
-        lines.append(_gain_text(document.gain, document))
+        lines.append(gain_text(document.gain, document))
     lines += [
         remainder_text(document),
         empirical_text(document),
-        settling_text(document),
+        left_out_text(document),
         margin_text(document),
         detectable_text(document),
         _PLAN if document.causes else "",
@@ -90,19 +88,3 @@ def _visible_lines(cause: CauseRecord, document: DiagnosisDocument) -> Iterator[
     )
     if note := note_text(cause):
         yield f"  found: {note}"
-
-
-def _gain_text(gain: GainRecord, document: DiagnosisDocument) -> str:
-    unit = document.torque_unit
-    where = (
-        f"on run {document.held_out}, not used for fitting"
-        if gain.basis == "new_run"
-        else "on its own training data (optimistic)"
-    )
-    low, high = map(percent_text, gain.ci95)
-    worse = worse_text(gain, unit)
-    return (
-        f"extended model: {gain.rmse_before:.3g} -> {gain.rmse_after:.3g} {unit} {where}, a gain of"
-        f" {100 * gain.reduction:.0f} % ({low} to {high});"
-        f" noise floor {gain.noise_floor:.2g} {unit}{worse and f'. {worse}'}"
-    )
