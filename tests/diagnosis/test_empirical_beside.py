@@ -72,6 +72,28 @@ def test_a_form_is_structure_where_no_property_of_the_joint_is_named():
         assert one is None or one.axes == ("temperature",)
 
 
+@pytest.mark.parametrize(
+    ("name", "basis", "is_structure"),
+    [
+        ("position_ripple", "new_run", True),
+        ("position_ripple", "within_run", False),
+        # along its own axis it may be the error of a cause's form
+        ("coulomb_temperature", "new_run", False),
+    ],
+)
+def test_beside_a_named_cause_a_term_is_structure_along_other_axes_if_it_predicts(
+    name, basis, is_structure
+):
+    empirical, _ = with_peak()
+    step = Step.of(Precomputed.of(problem(3)), [])
+    cause = SimpleNamespace(fit=SimpleNamespace(effect=BY_NAME[name]))
+    gain = replace(empirical.gain, basis=basis, reduction=0.36, interval=(0.24, 0.48))
+    one = unexplained(None, [cause], replace(empirical, gain=gain), step, 0.05)
+    assert (one is not None) == is_structure
+    if one is not None:
+        assert (one.axes, one.size) == (("temperature",), empirical.parts[0].size)
+
+
 def test_structure_that_a_term_shows_is_as_large_as_in_the_term():
     """The test along the axis takes off what any model's small errors may be of it."""
     empirical, _ = with_peak()

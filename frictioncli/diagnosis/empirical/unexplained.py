@@ -13,7 +13,7 @@ from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.diagnosis.search.structure_above_margin import unnamed_structure
-from frictioncli.diagnosis.search.understood import MOST_LEFT
+from frictioncli.diagnosis.search.understood import MOST_LEFT, axes_told
 from frictioncli.distributions import chi2_tail
 
 
@@ -28,9 +28,10 @@ def unexplained(
 
     A form has fewer parameters than the functions of that test, and an effect of the measurement
     that is not corrected may hold a part of the structure: where a term is worth using although no
-    property of the joint is named, there is structure. Smooth functions of a term without a form
-    are structure where they predict a new run beyond doubt: the test along an axis takes what
-    varies little more than a discrepancy for one, from the runs seen alone.
+    property of the joint is named that shows along the same axis, there is structure. Smooth
+    functions of a term without a form are structure where they predict a new run beyond doubt: the
+    test along an axis takes what varies little more than a discrepancy for one, from the runs seen
+    alone. Beside a named property of the joint that alone counts.
 
     Parameters
     ----------
@@ -50,13 +51,22 @@ def unexplained(
         return _with_second_axis(structure, empirical)
     if structure is not None or empirical is None:
         return structure
-    if any(not one.fit.effect.measurement for one in causes):
-        return None
+    named = [one.fit.effect for one in causes if not one.fit.effect.measurement]
+    if named:
+        largest = axes_told(empirical.parts[0].axes)
+        if not all(largest.isdisjoint(axes_told(one.needs)) for one in named):
+            return None
+        return _predicting(empirical)
     if empirical.p_value is not None:
         return _of_largest(empirical, empirical.p_value, empirical.statistic)
     along = unnamed_structure(step, 0.0, alpha)
     if along is not None:
         return _as_large_as(along, empirical)
+    return _predicting(empirical)
+
+
+def _predicting(empirical: Empirical) -> Structure | None:
+    """Return the largest part of a term as structure, if it predicts a new run beyond doubt."""
     if empirical.gain.basis != "new_run":
         return None
     statistic = _statistic(empirical.gain)

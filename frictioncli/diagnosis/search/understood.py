@@ -1,6 +1,6 @@
 """Which causes are understood: those that are no part of structure without a name."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
@@ -93,11 +93,21 @@ def structure_beside(
     return unnamed_structure(step, margin, alpha, is_form)
 
 
+def axes_told(names: Iterable[str]) -> set[str]:
+    """Return the axes along which these axes, or columns that an effect needs, show.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Axes of structure or columns.
+    """
+    return {_AXES.get(one, one) for one in names}
+
+
 def _is_form_of(cause: Cause, unnamed: Structure) -> bool:
     """Return whether structure is the error of a cause's form."""
     effect = cause.fit.effect
-    along = {_AXES.get(one, one) for one in effect.needs}
-    own = {_AXES.get(one, one) for one in unnamed.axes} <= along
+    own = axes_told(unnamed.axes) <= axes_told(effect.needs)
     same = not effect.measurement and effect.channel == unnamed.channel
     return same and own and unnamed.size < min(_FORM * cause.size, MOST_LEFT * cause.visible)
 
@@ -119,10 +129,10 @@ def is_part(fit: EffectFit, visible: float, unnamed: Structure, problem: Problem
     effect = fit.effect
     if effect.measurement or effect.channel != unnamed.channel:
         return False
-    along = {_AXES.get(one, one) for one in effect.needs}
+    along = axes_told(effect.needs)
     if goes_with_temperature(fit, problem):
         along.add("temperature")
-    if along.isdisjoint(_AXES.get(one, one) for one in unnamed.axes):
+    if along.isdisjoint(axes_told(unnamed.axes)):
         is_slow = effect is STEP_CHANGE or ("temperature" in along and unnamed.axes == ("time",))
         return is_slow and unnamed.size > _MOST_BESIDE * visible
     return unnamed.size > MOST_LEFT * visible
