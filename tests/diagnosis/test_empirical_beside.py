@@ -13,6 +13,7 @@ from frictioncli.diagnosis.fit.extension import extend, misfits
 from frictioncli.diagnosis.search.lack_of_fit import structures
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
+from frictioncli.diagnosis.search.structure import Structure
 from frictioncli.effects import BY_NAME
 from tests.diagnosis.dense_noise import problem
 
@@ -92,6 +93,27 @@ def test_beside_a_named_cause_a_term_is_structure_along_other_axes_if_it_predict
     assert (one is not None) == is_structure
     if one is not None:
         assert (one.axes, one.size) == (("temperature",), empirical.parts[0].size)
+
+
+def test_what_a_term_predicts_on_a_new_run_is_not_along_time():
+    """A term has no function of time; a history need not repeat, friction at a temperature does."""
+    empirical, _ = with_peak()
+    step = Step.of(Precomputed.of(problem(3)), [])
+    along_time = Structure(
+        axes=("time",),
+        channel="friction",
+        p_value=1e-4,
+        statistic=20.0,
+        size=0.5,
+        interval=(0.3, 0.7),
+    )
+    gain = replace(empirical.gain, basis="new_run", reduction=0.36, interval=(0.24, 0.48))
+    predicting = replace(empirical, gain=gain)
+    assert unexplained(along_time, (), empirical, step, 0.05) == along_time
+    found = unexplained(along_time, (), predicting, step, 0.05)
+    assert (found.axes, found.size) == (("temperature",), empirical.parts[0].size)
+    for other in (replace(along_time, channel="load"), replace(along_time, axes=("speed",))):
+        assert unexplained(other, (), predicting, step, 0.05) == other
 
 
 def test_structure_that_a_term_shows_is_as_large_as_in_the_term():

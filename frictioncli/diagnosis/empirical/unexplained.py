@@ -37,7 +37,8 @@ def unexplained(
     ----------
     structure : Structure or None
         Structure that the test along every axis found. Where it changes along another quantity by a
-        large share of its size, it is along both.
+        large share of its size, it is along both. Along time, which no term knows, it is along what
+        predicts it on a new run beyond doubt.
     causes : sequence of Cause
         Causes that are named.
     empirical : Empirical or None
@@ -48,6 +49,9 @@ def unexplained(
         Significance level.
     """
     if structure is not None and empirical is not None:
+        predicting = _predicting(empirical) if structure.axes == ("time",) else None
+        if predicting is not None and predicting.channel == structure.channel:
+            return predicting
         return _with_second_axis(structure, empirical)
     if structure is not None or empirical is None:
         return structure
