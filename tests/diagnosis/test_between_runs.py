@@ -19,8 +19,11 @@ from tests.simulation.torque_table import simulate_torques
 pytestmark = pytest.mark.slow
 
 
-def diagnosed(seed, levels, rate=0.0, torques=None):
-    """Diagnose days with so many per cent or N·m more friction each, and a drift [N·m/h]."""
+def diagnosed(seed, levels, rate=0.0, torques=None, late=0.0):
+    """Diagnose days with so many per cent or N·m more friction each, and a drift [N·m/h].
+
+    Near the end of the second day friction rises by a torque and stays there.
+    """
     table = simulate_torques(SynthesisSettings(seed=seed, runs=len(levels), joint_kind="plain"))
     day = table["run"].astype(str).str.removeprefix("day").astype(int).to_numpy() - 1
     friction = table["friction_torque"].to_numpy(float)
@@ -28,6 +31,8 @@ def diagnosed(seed, levels, rate=0.0, torques=None):
     added = friction * np.array(levels)[day] / 100 + rate * time
     if torques is not None:
         added = added + np.array(torques)[day]
+    begun = np.quantile(hours(table)[day == 1], 0.9)
+    added = added + late * ((day > 1) | ((day == 1) & (hours(table) > begun)))
     changed = table.assign(
         friction_torque=friction + added,
         torque_forward=table["torque_forward"] + added,
@@ -64,6 +69,18 @@ def test_a_day_that_differs_by_more_than_days_do_has_a_step():
     (cause,) = diagnosis.causes
     assert cause.fit.effect.name == "step_change"
     assert cause.holds_on_new_run is False
+
+
+@pytest.mark.parametrize(("late", "is_named"), [(1.6, True), (0.3, False)])
+def test_a_step_near_the_end_of_a_day_that_lasts_is_named(late, is_named):
+    """A tenth of the day shows it, and the whole of the next one."""
+    diagnosis = diagnosed(3, np.zeros(3), late=late)
+    names = [one.fit.effect.name for one in diagnosis.causes]
+    assert names == (["step_change"] if is_named else [])
+    if is_named:
+        (cause,) = diagnosis.causes
+        assert cause.holds_on_new_run
+        assert cause.fit.coefficients == pytest.approx([late], rel=0.3)
 
 
 @pytest.fixture(scope="module")

@@ -35,6 +35,10 @@ _LAGS = frozenset({SENSOR_LAG.name, THERMAL_LAG.name})
 _WITHIN = 6.6
 """Twice the log likelihood ratio by which a cause shows within the runs: p = 0.01."""
 
+_AT_END = 30.0
+"""The same of a step that begins near the end of a run: p = 4e-8. A run that begins is not settled;
+one that ends is, but its last pairs are few."""
+
 _OF_RUN = 0.15
 """Share of the rows of a run, at its start or end, in which a change may be there without showing
 within the run."""
@@ -128,16 +132,21 @@ def differs_as_days_do(
     least = float(np.ptp(means)) * (1.0 - Z95 * relative)
     if least >= BETWEEN_DAYS * float(np.mean(np.abs(problem.friction))):
         return False
+    least = _WITHIN
     if fit.effect is STEP_CHANGE:
         # a pair or two at the start of a run are no evidence
-        shares = [float(np.mean(torque[run == one] != 0)) for one in runs]
-        return not any(_OF_RUN < share < 1.0 - _OF_RUN for share in shares)
+        there = [torque[run == one] != 0 for one in runs]
+        if any(_OF_RUN < float(np.mean(one)) < 1.0 - _OF_RUN for one in there):
+            return False
+        if not any(one[-1] and not one[0] for one in there):
+            return True
+        least = _AT_END
     others = [one for one in step.accepted if one.effect not in (fit.effect, STEP_CHANGE)]
     beside = Step.of(step.precomputed, [*others, *_levels(step)])
     if planted is not None:
         basis, size = planted
         beside = beside.planted(basis, np.array([size]))
-    return beside.fitted(fit.effect, fit.shape).statistic <= _WITHIN
+    return beside.fitted(fit.effect, fit.shape).statistic <= least
 
 
 def _levels(step: Step) -> list[EffectFit]:
