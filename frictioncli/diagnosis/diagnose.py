@@ -41,10 +41,9 @@ from frictioncli.diagnosis.search.timing_causes import late_torque
 from frictioncli.diagnosis.search.verdict import verdict_of, visible_causes
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG, settled
-from frictioncli.effects import EFFECTS
+from frictioncli.effects import EFFECTS, RIVALS
 from frictioncli.effects.base import Effect
 from frictioncli.effects.payload_change import EFFECT as PAYLOAD_CHANGE
-from frictioncli.effects.torque_scale import EFFECT as TORQUE_SCALE
 from frictioncli.errors import NotEnoughData
 from frictioncli.logs.runs.run_order import runs_in_order
 from frictioncli.model.zero_load import with_temperature
@@ -240,9 +239,10 @@ def _diagnosed(
 
 
 def _found(causes: Sequence[Cause]) -> frozenset[str]:
-    """Return the names of the effects that causes were found as, and a payload for a scale."""
+    """Return the effects that causes were found as, and a payload for a rival of it."""
     names = {one.fit.effect.name for one in causes}
-    return frozenset(names | {PAYLOAD_CHANGE.name} if TORQUE_SCALE.name in names else names)
+    is_rival = not names.isdisjoint(one.name for one in RIVALS)
+    return frozenset(names | {PAYLOAD_CHANGE.name} if is_rival else names)
 
 
 def predicting(extension: Extension, causes: Sequence[Cause]) -> Extension:

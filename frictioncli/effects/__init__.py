@@ -20,6 +20,7 @@ from frictioncli.effects import (
     load_temperature,
     load_velocity,
     payload_change,
+    position_offset,
     position_ripple,
     quadratic_drag,
     rest_recovery,
@@ -74,10 +75,11 @@ They stand beside the base model from the start, so that no other effect explain
 lag of the sensor has the opposite sign of a gear that follows the motor, and takes nothing of it; a
 gear that friction warms more than the motor looks much like it."""
 
-RIVALS: tuple[Effect, ...] = (torque_scale.EFFECT,)
+RIVALS: tuple[Effect, ...] = (torque_scale.EFFECT, position_offset.EFFECT)
 """Effects that are not searched for: each looks like another one, and is told from it afterwards.
 
-A change of the scale of the torque is told from one of the payload by the friction."""
+A change of the scale of the torque is told from one of the payload by the friction, one of the zero
+of the position by the form of its load."""
 
 BY_NAME: Mapping[str, Effect] = MappingProxyType(
     {effect.name: effect for effect in (*EFFECTS, *MEASUREMENT_EFFECTS, *RIVALS)}

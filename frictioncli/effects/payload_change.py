@@ -67,8 +67,9 @@ EFFECT = Effect(
     ),
     confounders=("torque_constant", "dress_pack", "step_change"),
     experiment=(
-        "Weigh the payload and repeat one slow sweep at the temperature of the first run:"
-        " a changed mass stays, an effect of the torque constant changes with temperature."
+        "Weigh the payload, see whether a joint that is not logged stands elsewhere, and repeat one"
+        " slow sweep at the temperature of the first run: a changed mass stays, an effect of the"
+        " torque constant changes with temperature."
     ),
     mirror="Friction must change only by what the base model gives for the new load.",
     statement=(

@@ -42,6 +42,7 @@ BOTH = {
     "torque_constant",
     "payload_change",
     "torque_scale",
+    "position_offset",
     "inertia",
     "reversal_transient",
     "rest_recovery",
@@ -60,6 +61,7 @@ ANGLE_DEPENDENT = {
     "load_temperature",
     "torque_constant",
     "torque_scale",
+    "position_offset",
     "payload_change",
     "dress_pack",
     "position_ripple",
@@ -145,7 +147,7 @@ def test_catalogue_holds_the_names_of_the_contract_in_order():
     assert [effect.name for effect in MEASUREMENT_EFFECTS] == MEASUREMENT
     rivals = [effect.name for effect in RIVALS]
     assert list(BY_NAME) == list(NEEDS) == CONTRACT + MEASUREMENT + rivals
-    assert rivals == ["torque_scale"]
+    assert rivals == ["torque_scale", "position_offset"]
 
 
 @every_effect

@@ -291,3 +291,13 @@ def test_torque_scale_is_the_same_share_of_both_channels_while_it_is_there():
     basis = BY_NAME["torque_scale"].evaluate(table, {"moment": 0.5, "end": 1.0})
     assert 3.0 * basis.friction[:, 0] == pytest.approx([0.0, 0.0, 1.5, 1.5])
     assert 3.0 * basis.load[:, 0] == pytest.approx([0.0, 0.0, -0.6, -0.6])
+
+
+def test_position_offset_turns_gravity_while_it_is_there():
+    """Gravity of 40 N·m times the cosine, 2 deg off at 30 deg, in the second half of four pairs."""
+    slope = -40.0 * np.sin(np.radians(30.0)) * np.pi / 180.0
+    table = small(pair=np.arange(4), clock=np.arange(4) * 60.0, load_gradient=slope, load_slope=0.1)
+    basis = BY_NAME["position_offset"].evaluate(table, {"moment": 0.5, "end": 1.0})
+    turned = 40.0 * (np.cos(np.radians(28.0)) - np.cos(np.radians(30.0)))
+    assert 2.0 * basis.load[:, 0] == pytest.approx([0.0, 0.0, turned, turned], rel=0.05)
+    assert basis.friction[:, 0] == pytest.approx(0.1 * basis.load[:, 0])

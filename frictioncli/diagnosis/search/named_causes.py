@@ -12,10 +12,10 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
 from frictioncli.diagnosis.search.judging import JudgedCauses, Judging, names_of
 from frictioncli.diagnosis.search.measurement import measurement_causes
+from frictioncli.diagnosis.search.payload_rivals import with_payload_rivals
 from frictioncli.diagnosis.search.search_result import SearchResult
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.search.structure import Structure
-from frictioncli.diagnosis.search.torque_scale import with_torque_scale
 from frictioncli.diagnosis.search.understood import structure_beside
 from frictioncli.diagnosis.search.without_a_name import (
     beyond_doubt_without_a_name,
@@ -76,21 +76,21 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
         judged, _ = judging.without_parts(judged)
     others = [one for one in judged.causes if one.standing != "named"]
     rows = [judging.problem] if judging.new is None else [judging.problem, judging.new]
-    scaled = with_torque_scale(judged.named, judged.found.step, rows)
-    if scaled.step is not step:
+    rivalled = with_payload_rivals(judged.named, judged.found.step, rows)
+    if rivalled.step is not step:
         # what lost its name was a part of the structure, or all of it
-        left = structure_beside(scaled.step, scaled.causes, judging.margin, judging.alpha)
-        structure = left if scaled.step is not judged.found.step else left or structure
+        left = structure_beside(rivalled.step, rivalled.causes, judging.margin, judging.alpha)
+        structure = left if rivalled.step is not judged.found.step else left or structure
     there = beyond_doubt_without_a_name(first.causes, names_of(judged.named), judging.margin)
-    if structure is None and all(one.fit.effect.measurement for one in scaled.causes):
+    if structure is None and all(one.fit.effect.measurement for one in rivalled.causes):
         structure = change_over_time(there)
     return NamedCauses(
-        causes=scaled.causes,
-        others=(*others, *lost_on_the_way, *scaled.replaced),
+        causes=rivalled.causes,
+        others=(*others, *lost_on_the_way, *rivalled.replaced),
         structure=structure,
         measurement=judged.found.measurement,
         timing=judged.timing,
-        step=scaled.step,
+        step=rivalled.step,
     )
 
 

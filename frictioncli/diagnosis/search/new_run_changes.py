@@ -36,8 +36,8 @@ from frictioncli.diagnosis.search.largest_structure import BETWEEN_DAYS
 from frictioncli.diagnosis.search.new_run import parts_of
 from frictioncli.diagnosis.search.new_run_misfit import NewRunMisfit
 from frictioncli.diagnosis.search.new_run_torque import rivals_of_change, slow_torque
+from frictioncli.diagnosis.search.payload_rivals import with_rivals_on_new_run
 from frictioncli.diagnosis.search.structure import Structure
-from frictioncli.diagnosis.search.torque_scale import with_scale_on_new_run
 from frictioncli.effects.base import Basis, Effect
 from frictioncli.effects.drift import EFFECT as DRIFT
 from frictioncli.effects.history import (
@@ -119,7 +119,7 @@ def changes_on_new_run(
         if cause is None or (structure is not None and _goes_on(structure, cause)):
             continue
         least = _EXPLAINED * (left - beyond**2)
-        judged = with_scale_on_new_run(cause, residual)
+        judged = with_rivals_on_new_run(cause, residual)
         squares = (
             _square_left(residual, residual.new.basis(one.effect, one.shape), one.coefficients)
             for one in (cause.fit, judged.fit)
