@@ -129,6 +129,12 @@ def test_structure_that_a_term_shows_is_as_large_as_in_the_term():
     # the term has none along that axis
     elsewhere = replace(smooth, parts=(replace(part, axes=("speed",)),))
     assert unexplained(None, (), elsewhere, step, 0.05) == tested
+    # or more than three times as much along another one, and predicts a new run
+    gain = replace(smooth.gain, basis="new_run", reduction=0.36, interval=(0.24, 0.48))
+    for times, axes in ((2.0, ("temperature",)), (4.0, ("speed",))):
+        large = replace(part, axes=("speed",), size=times * tested.size)
+        found = unexplained(None, (), replace(smooth, gain=gain, parts=(large,)), step, 0.05)
+        assert found.axes == axes
 
 
 @pytest.mark.parametrize(

@@ -65,6 +65,15 @@ def test_a_payload_on_a_joint_that_rings_behind_its_ramps_every_day(torques):
     assert cause.fit.coefficients == pytest.approx([2.0, 1.0], abs=0.3)
 
 
+def test_a_load_that_follows_the_temperature_on_every_day_is_no_payload(torques):
+    """The warm hours of the new day have as much more load as those of the day before."""
+    gain = 1 + 0.004 * (torques["motor_temperature"] - torques["motor_temperature"].mean())
+    alike = torques.assign(load_torque=torques["load_torque"] * gain)
+    assert found(alike)[0] == ()
+    (cause,), _, _ = found(with_payload(alike, second(torques), 5.0, 2.0))
+    assert cause.effects == ("payload_change",)
+
+
 @pytest.mark.parametrize("after", [-1.0, 3.6])
 def test_a_payload_that_is_put_on(torques, after):
     """5 N·m at 0 deg and 2 at 90 deg, on the whole day or from noon on."""

@@ -64,9 +64,13 @@ def unexplained(
     if empirical.p_value is not None:
         return _of_largest(empirical, empirical.p_value, empirical.statistic)
     along = unnamed_structure(step, 0.0, alpha)
-    if along is not None:
-        return _as_large_as(along, empirical)
-    return _predicting(empirical)
+    predicting = _predicting(empirical)
+    if along is None:
+        return predicting
+    as_large = _as_large_as(along, empirical)
+    # along another axis than most of what the term predicts it is no more than a part of that
+    is_part = predicting is not None and as_large.size < MOST_LEFT * predicting.size
+    return predicting if is_part else as_large
 
 
 def _predicting(empirical: Empirical) -> Structure | None:

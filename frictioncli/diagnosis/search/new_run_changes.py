@@ -68,6 +68,10 @@ _CLEAR_SHARE = 0.02
 _LEAST_PRESENT = 0.1
 """Least share of the pairs of the run that have a change, and that lack one that begins later."""
 
+_MOST_EXPLAINED = 3.0
+"""Greatest mean square that a change explains, relative to what is new on the run: what the model
+leaves of two days may differ."""
+
 _AS_LARGE = 1 / 3
 """Size of structure along time on the runs seen, relative to a change, that may be the same."""
 
@@ -118,13 +122,15 @@ def changes_on_new_run(
         cause = _change(residual, effect, tried, margin)
         if cause is None or (structure is not None and _goes_on(structure, cause)):
             continue
-        least = _EXPLAINED * (left - beyond**2)
+        new = left - beyond**2
         judged = with_rivals_on_new_run(cause, residual)
         squares = (
             _square_left(residual, residual.new.basis(one.effect, one.shape), one.coefficients)
             for one in (cause.fit, judged.fit)
         )
-        if any(left - square >= least for square in squares):
+        explained = max(left - square for square in squares)
+        # what explains much more than is new is there on the runs seen as well
+        if _EXPLAINED * new <= explained <= _MOST_EXPLAINED * max(new, 0.0):
             found.append(judged)
     return tuple(sorted(found, key=lambda one: -one.test.statistic)[:1])
 
