@@ -1,5 +1,6 @@
 """Separation of friction and load: ``separate``."""
 
+import statistics
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -39,6 +40,14 @@ _MANY_PAIRS = 30
 _LEAST_SHARE = 0.1
 """Share of the samples in motion that fewer pairs hold at least; else a regression is tried. It
 uses most of them, and is refused where it does not tell friction from the rest."""
+
+
+_OTHER_SCALE = 4.0
+"""Mean friction of a run relative to that of the other runs from which on it is told: speeds and
+temperatures rarely make as much of a difference."""
+
+_FEW_PAIRS = 6
+"""Pairs of a run from which its mean friction is compared."""
 
 
 @stage
@@ -89,7 +98,25 @@ def separate(
         for joint, values in found.items()
         if regressed is None or joint not in regressed.signs
     }
-    return _write(work, settings, others, regressed, texts)
+    return _write(work, settings, others, regressed, [*texts, *_of_other_scale(others)])
+
+
+def _of_other_scale(found: Mapping[int, Mapping[str, HalfDifferences]]) -> Iterator[str]:
+    """Yield which runs have many times the usual friction, of two runs that of the first."""
+    for joint, runs in found.items():
+        means = {run: abs(one.mean) for run, one in runs.items() if one.count >= _FEW_PAIRS}
+        if len(means) < 2:
+            continue
+        first, *_ = means.values()
+        usual = first if len(means) == 2 else statistics.median(means.values())
+        for run, mean in means.items():
+            times = max(mean, usual) / max(min(mean, usual), 1e-12)
+            if times >= _OTHER_SCALE:
+                yield (
+                    f"joint {joint}: warning: friction of run {run} is {times:.2g} times"
+                    f" {'higher' if mean > usual else 'lower'} than that of other runs; see whether"
+                    " its torque has another unit or scale before it is used with them"
+                )
 
 
 def _with_few_pairs(
