@@ -52,7 +52,6 @@ _REASONS = {
     "rest_recovery": "depends on the rests between the log's series",
     "step_change": "was present during parts of the log only",
     "torque_scale": "scales friction and load, and was present during parts of the log only",
-    "position_offset": "was present during parts of the log only",
     "reversal_transient": "depends on the angle since the last reversal",
     "position_ripple": "depends on the angle",
     "inertia": "depends on acceleration, and is not friction",

@@ -16,7 +16,8 @@ from frictioncli.diagnosis.data.worst_misfits import worst_misfits
 from frictioncli.diagnosis.empirical.estimate import as_structure, empirical_term
 from frictioncli.diagnosis.empirical.on_new_run import structure_on_new_run
 from frictioncli.diagnosis.empirical.unexplained import unexplained
-from frictioncli.diagnosis.fit.extension import Extension, extend, measured_gain, rms_misfit
+from frictioncli.diagnosis.fit.extension import Extension, extend, rms_misfit
+from frictioncli.diagnosis.fit.gain import measured_gain
 from frictioncli.diagnosis.found_causes import found_causes
 from frictioncli.diagnosis.joint_diagnosis import Diagnosis
 from frictioncli.diagnosis.needless_steps import without_needless_steps

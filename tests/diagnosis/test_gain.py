@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from frictioncli.diagnosis.fit.extension import extend, measured_gain
+from frictioncli.diagnosis.fit.extension import extend
+from frictioncli.diagnosis.fit.gain import measured_gain
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.step import Step
 from frictioncli.effects import BY_NAME

@@ -15,7 +15,6 @@ import numpy as np
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import base_rows
-from frictioncli.diagnosis.fit.gain import Gain, gain_of
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
@@ -287,37 +286,3 @@ def rms_misfit(problem: Problem, fitted: Refit) -> float:
         Changes of the base, and effects.
     """
     return float(np.sqrt(np.mean(problem.squared(*misfits(problem, fitted)))))
-
-
-def measured_gain(
-    problem: Problem,
-    extension: Extension,
-    *,
-    base: Problem,
-    basis: str,
-    floor: float,
-    seed: int,
-) -> Gain:
-    """Return by how much an extension reduces the misfit of the simulated torque.
-
-    Parameters
-    ----------
-    problem : Problem
-        Rows to be predicted, with the base model of the extension's own problem.
-    extension : Extension
-        The extension.
-    base : Problem
-        The same rows with the base model at the measured temperature.
-    basis : {"new_run", "within_run"}
-        Whether these rows were new to it.
-    floor : float
-        RMS of the noise that is new with each pair. [N·m]
-    seed : int
-        Seed of the block bootstrap.
-    """
-    missed = (base.friction_misfit, base.load_misfit), misfits(problem, extension)
-    before, after = (problem.squared(*both) for both in missed)
-    gain = gain_of(problem, before, after, basis=basis, floor=floor, seed=seed)
-    varying = (problem.squared(*(one - one.mean() for one in both)) for both in missed)
-    first, last = (float(np.sqrt(np.mean(square))) for square in varying)
-    return replace(gain, without_level=(first, last))

@@ -1,11 +1,12 @@
 """By how much the RMS of a misfit is reduced, with a block-bootstrap interval."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.extension import Extension, misfits
 
 BLOCK = 12
 """Pairs per block of the bootstrap: the misfits of neighbouring pairs are not independent."""
@@ -43,6 +44,39 @@ class Gain:
     without_level: tuple[float, float] | None = None
 
 
+def measured_gain(
+    problem: Problem,
+    extension: Extension,
+    *,
+    base: Problem,
+    basis: str,
+    floor: float,
+    seed: int,
+) -> Gain:
+    """Return by how much an extension reduces the misfit of the simulated torque.
+
+    Parameters
+    ----------
+    problem : Problem
+        Rows to be predicted, with the base model of the extension's own problem.
+    extension : Extension
+        The extension.
+    base : Problem
+        The same rows with the base model at the measured temperature.
+    basis : {"new_run", "within_run"}
+        Whether these rows were new to it.
+    floor : float
+        RMS of the noise that is new with each pair. [N·m]
+    seed : int
+        Seed of the block bootstrap.
+    """
+    missed = (base.friction_misfit, base.load_misfit), misfits(problem, extension)
+    before, after = (problem.squared(*both) for both in missed)
+    gain = gain_of(problem, before, after, basis=basis, floor=floor, seed=seed)
+    first, last = (rms_about_mean(problem, *both) for both in missed)
+    return replace(gain, without_level=(first, last))
+
+
 def gain_of(
     problem: Problem, before: Array, after: Array, *, basis: str, floor: float, seed: int
 ) -> Gain:
@@ -70,6 +104,20 @@ def gain_of(
         interval=reduction_interval(problem, before, after, seed),
         floor=floor,
     )
+
+
+def rms_about_mean(problem: Problem, friction: Array, load: Array) -> float:
+    """Return the RMS of a misfit without its mean in either channel [N·m].
+
+    Parameters
+    ----------
+    problem : Problem
+        The rows.
+    friction, load : ndarray, shape (rows,)
+        The misfit in both channels. [N·m]
+    """
+    square = problem.squared(friction - np.mean(friction), load - np.mean(load))
+    return float(np.sqrt(np.mean(square)))
 
 
 def reduction_interval(
