@@ -43,7 +43,7 @@ _DRIFT = 0.015
 _PINNED = 1e-3
 """Spread of the amplitudes of the discrepancy: they stay as they are expected."""
 
-TOLD_BY_ANGLE = 10.0
+TOLD_BY_ANGLE = 20.0
 """By so much structure along the load must be likelier than another: with one payload and pose the
 load is a function of the angle, and what goes with it goes with the angle, too."""
 
