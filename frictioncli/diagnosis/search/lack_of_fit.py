@@ -33,7 +33,7 @@ from frictioncli.diagnosis.search.carried_load import most_likely_constant
 from frictioncli.diagnosis.search.drift_beyond import drift_beyond
 from frictioncli.diagnosis.search.random_function import Known, RandomFunction
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.diagnosis.search.structure import Structure
+from frictioncli.diagnosis.search.structure import SIGNIFICANT, Structure
 from frictioncli.distributions import chi2_tail
 from frictioncli.effects.base import CHANNELS, Channel
 
@@ -53,6 +53,9 @@ _Place = tuple[tuple[str, ...], Channel]
 _Judged = tuple[RandomFunction, Array]
 """A random function and its columns."""
 
+_Structures = tuple[tuple[Structure, ...], dict[Structure, Array | None]]
+"""Structures, most likely first, and the columns of some; a drift has none."""
+
 _LOAD: _Place = (("load",), "friction")
 _ANGLE: _Place = (("position",), "friction")
 _LOAD_AND_SPEED: _Place = (("load", "speed"), "friction")
@@ -70,7 +73,7 @@ def structures(step: Step) -> tuple[Structure, ...]:
     step : Step
         Base and accepted effects.
     """
-    return tuple(one for one, _ in _with_columns(step))
+    return _all_structures(step)[0]
 
 
 def beside_others(
@@ -83,9 +86,9 @@ def beside_others(
     Parameters
     ----------
     structure : Structure
-        One of :func:`structures`.
+        One of :func:`structures` that is significant.
     others : sequence of Structure
-        Others of them.
+        Others of them that are.
     step : Step
         Base and accepted effects.
     """
@@ -96,7 +99,7 @@ def beside_others(
 def _beside_others(
     structure: Structure, others: Sequence[Structure], step: Step
 ) -> Structure | None:
-    columns_of = dict(_with_columns(step))
+    found, columns_of = _all_structures(step)
     columns = columns_of[structure]
     if columns is None:
         return structure
@@ -111,16 +114,11 @@ def _beside_others(
         return None
     return replace(
         structure,
-        p_value=_p_value(left, len(columns_of)),
+        p_value=_p_value(left, len(found)),
         statistic=max(left.statistic, 0.0),
         size=left.size,
         interval=left.interval,
     )
-
-
-def _with_columns(step: Step) -> tuple[tuple[Structure, Array | None], ...]:
-    """Return the lack of fit along every axis and its columns, which a drift does not have."""
-    return step.once(_with_columns, lambda: _all_structures(step))
 
 
 def _known(step: Step) -> Known:
@@ -128,23 +126,31 @@ def _known(step: Step) -> Known:
     return step.once(_known, lambda: Known.of(step, expected_components(step)))
 
 
-def _all_structures(step: Step) -> tuple[tuple[Structure, Array | None], ...]:
+def _all_structures(step: Step) -> _Structures:
+    """Return the lack of fit along every axis, and the columns of what is significant."""
+    return step.once(_all_structures, lambda: _tested(step))
+
+
+def _tested(step: Step) -> _Structures:
     known = _known(step)
     of_axes = _along_axes(step, known)
     tests = len(of_axes) + len(CHANNELS)
-    found: list[tuple[Structure, Array | None]] = [
-        (_structure(place, one, _p_value(one, tests)), columns)
-        for place, (one, columns) in of_axes.items()
-    ]
+    found: list[Structure] = []
+    columns_of: dict[Structure, Array | None] = {}
+    for place, (one, columns) in of_axes.items():
+        found.append(_structure(place, one, _p_value(one, tests)))
+        if found[-1].p_value < SIGNIFICANT:
+            columns_of[found[-1]] = columns
     for number, channel in enumerate(CHANNELS):
         drift = drift_beyond(step, known.components, known.fits[0], number)
         p_value = min(_p_value(drift.function, tests), tests * drift.chance)
-        found.append((_structure((("time",), channel), drift.function, p_value), None))
+        found.append(_structure((("time",), channel), drift.function, p_value))
+        columns_of[found[-1]] = None
 
-    def behind(one: tuple[Structure, Array | None]) -> float:
-        return -one[0].statistic + TOLD_BY_ANGLE * (one[0].axes[0] == "load")
+    def behind(one: Structure) -> float:
+        return -one.statistic + TOLD_BY_ANGLE * (one.axes[0] == "load")
 
-    return tuple(sorted(found, key=behind))
+    return tuple(sorted(found, key=behind)), columns_of
 
 
 def _along_axes(step: Step, known: Known) -> dict[_Place, _Judged]:

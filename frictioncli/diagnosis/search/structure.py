@@ -4,6 +4,9 @@ from dataclasses import dataclass
 
 from frictioncli.effects.base import Channel
 
+SIGNIFICANT = 5e-3
+"""Greatest p-value of structure that no effect explains."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Structure:

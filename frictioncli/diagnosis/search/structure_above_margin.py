@@ -7,10 +7,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.search.lack_of_fit import TOLD_BY_ANGLE, beside_others, structures
 from frictioncli.diagnosis.search.margin import channel_margin
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.diagnosis.search.structure import Structure
-
-_SIGNIFICANT = 5e-3
-"""Greatest p-value of structure that no effect explains."""
+from frictioncli.diagnosis.search.structure import SIGNIFICANT, Structure
 
 _NO_DOUBT = 1e-12
 """P-value below which there is no doubt that structure is there."""
@@ -37,7 +34,7 @@ def unnamed_structure(
     """
     found = structures(step)
     unknown = [one for one in found if not is_known(one)]
-    level = min(_SIGNIFICANT, alpha)
+    level = min(SIGNIFICANT, alpha)
 
     def beside(one: Structure, others: Sequence[Structure]) -> Structure | None:
         return beside_others(one, others, step)
