@@ -157,9 +157,8 @@ def _with_temperature(
     if temperature_of(known, kind).notna().all():
         return known, []
     if kind != "motor":
-        columns = {"housing": ["housing_temperature"]}.get(
-            kind, ["motor_temperature", "housing_temperature"]
-        )
+        both = ["motor_temperature", "housing_temperature"]
+        columns = ["housing_temperature"] if kind == "housing" else both
         raise NotEnoughData(
             f"joint {joint}: the log has no {' and '.join(columns)}, which --temperature {kind}"
             " needs; use --temperature motor"

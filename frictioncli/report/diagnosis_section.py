@@ -60,8 +60,8 @@ class DiagnosisSection:
         found and is not named.
     margin : str
         The smallest size worth a name, in words.
-    settling : str
-        What was left out because the torque had not settled; may be empty.
+    left_out : str
+        What the diagnosis has not used; may be empty.
     worst, detectable : TextTable or None
         Largest misfits of the simulation; smallest size at which each effect would be found.
     planted : PlantedText
@@ -76,7 +76,7 @@ class DiagnosisSection:
     remainder: str = ""
     empirical: str = ""
     margin: str = ""
-    settling: str = ""
+    left_out: str = ""
     gain: str = ""
     worst: TextTable | None = None
     detectable: TextTable | None = None
@@ -107,7 +107,7 @@ def diagnosis_section(results: JointResults) -> DiagnosisSection:
         remainder=remainder_text(document),
         empirical=empirical_text(document),
         margin=margin_text(document),
-        settling=left_out_text(document),
+        left_out=left_out_text(document),
         gain=gain_sentence(document, unit),
         worst=worst if worst.rows else None,
         detectable=detectable_table(document, unit),

@@ -1,10 +1,6 @@
 """What a diagnosis found, sentence by sentence, as terminal and page say it."""
 
-from frictioncli.diagnosis.documents.document import (
-    OTHER_JOINT,
-    CauseRecord,
-    DiagnosisDocument,
-)
+from frictioncli.diagnosis.documents.document import OTHER_JOINT, CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord
 from frictioncli.diagnosis.search.effect_size import TAKEN_BY_BASE
 from frictioncli.diagnosis.search.margin import LEAST_MARGIN

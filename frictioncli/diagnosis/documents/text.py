@@ -2,10 +2,7 @@
 
 from collections.abc import Iterator
 
-from frictioncli.diagnosis.documents.document import (
-    CauseRecord,
-    DiagnosisDocument,
-)
+from frictioncli.diagnosis.documents.document import CauseRecord, DiagnosisDocument
 from frictioncli.diagnosis.documents.gain_text import gain_text
 from frictioncli.diagnosis.documents.remainder_words import remainder_text
 from frictioncli.diagnosis.documents.sentences import (

@@ -92,6 +92,19 @@ class Components:
     most_drift: tuple[float, float] = (np.inf, np.inf)
     bases: tuple[BaseProducts, BaseProducts] | None = None
 
+    def with_most_drift(self, number: int, most: float) -> "Components":
+        """Return the components with another greatest drift in one channel.
+
+        Parameters
+        ----------
+        number : int
+            0 for friction, 1 for load.
+        most : float
+            Greatest variance of the drift. [(N·m)²]
+        """
+        friction, load = np.where(np.arange(2) == number, most, self.most_drift)
+        return replace(self, most_drift=(float(friction), float(load)))
+
     def beside_function(self, place: slice, amplitude: float) -> "Components":
         """Return the components with one more random function, of any amplitude.
 

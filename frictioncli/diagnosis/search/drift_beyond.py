@@ -1,6 +1,6 @@
 """Drift beyond what any joint has: of its process, or of what it surely was on these runs."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -48,17 +48,20 @@ def drift_beyond(step: Step, expected: Components, null: MixedFit, number: int) 
     number : int
         0 for friction, 1 for load.
     """
-
-    def limited(most: float) -> Components:
-        both = np.where(np.arange(2) == number, most, expected.most_drift)
-        return replace(expected, most_drift=(float(both[0]), float(both[1])))
-
     products, known = step.products, step.known
-    fit = fit_variances(limited(np.inf), products, known, null.variances, step.fit.variances)
+    fit = fit_variances(
+        expected.with_most_drift(number, np.inf),
+        products,
+        known,
+        null.variances,
+        step.fit.variances,
+    )
     size, interval = realised_drift(step, fit, number)
     chance = chance_of_less(size, interval, float(np.sqrt(expected.most_drift[number])))
     if chance < 1.0:
-        without = fit_variances(limited(0.0), products, known, step.precomputed.start)
+        without = fit_variances(
+            expected.with_most_drift(number, 0.0), products, known, step.precomputed.start
+        )
         # of strength and correlation time
         chance = max(chance, chi2_tail(without.objective - fit.objective, 2))
     return DriftBeyond(RandomFunction(null.objective - fit.objective, size, interval), chance)

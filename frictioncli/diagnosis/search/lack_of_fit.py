@@ -112,13 +112,7 @@ def _beside_others(
     left = known.judged(structure.channel, columns)
     if left is None:
         return None
-    return replace(
-        structure,
-        p_value=_p_value(left, len(found)),
-        statistic=max(left.statistic, 0.0),
-        size=left.size,
-        interval=left.interval,
-    )
+    return _structure((structure.axes, structure.channel), left, _p_value(left, len(found)))
 
 
 def _known(step: Step) -> Known:

@@ -130,7 +130,7 @@ def changes_on_new_run(
         )
         explained = max(left - square for square in squares)
         # what explains much more than is new is there on the runs seen as well
-        if _EXPLAINED * new <= explained <= _MOST_EXPLAINED * max(new, 0.0):
+        if _EXPLAINED * new <= explained <= _MOST_EXPLAINED * new:
             found.append(judged)
     return tuple(sorted(found, key=lambda one: -one.test.statistic)[:1])
 

@@ -159,15 +159,8 @@ def with_rivals_on_new_run(cause: Cause, residual: NewRunMisfit) -> Cause:
     new = residual.new
     if cause.fit.effect is not PAYLOAD_CHANGE or new.has_load_channel:
         return cause
-    added = new.basis(PAYLOAD_CHANGE, cause.fit.shape)
     none = Basis(np.empty((len(new.friction), 0)), np.empty((len(new.friction), 0)))
-    torques = _Torques(
-        left=Basis(*(one[:, np.newaxis] for one in residual.misfit)),
-        base=none,
-        added=Basis(*((one @ cause.fit.coefficients)[:, np.newaxis] for one in added)),
-        scaled=new.basis(TORQUE_SCALE, cause.fit.shape),
-        turned=new.basis(POSITION_OFFSET, cause.fit.shape),
-    )
+    torques = _Torques.of(new, cause.fit, residual.misfit, none)
     judged = _with_chances(cause, _chances(cause.fit, torques, [new]))
     rival = BY_NAME[judged.effects[0]]
     if rival is PAYLOAD_CHANGE:
@@ -206,6 +199,20 @@ class _Torques:
     added: Basis
     scaled: Basis
     turned: Basis
+
+    @classmethod
+    def of(
+        cls, problem: Problem, payload: EffectFit, left: tuple[Array, Array], base: Basis
+    ) -> "_Torques":
+        """Return what is left of friction and load, and what may explain it in some rows."""
+        added = problem.basis(payload.effect, payload.shape)
+        return cls(
+            left=Basis(*(one[:, np.newaxis] for one in left)),
+            base=base,
+            added=Basis(*((one @ payload.coefficients)[:, np.newaxis] for one in added)),
+            scaled=problem.basis(TORQUE_SCALE, payload.shape),
+            turned=problem.basis(POSITION_OFFSET, payload.shape),
+        )
 
 
 def _of_runs(
@@ -278,14 +285,8 @@ def _torques_of(problem: Problem, payload: EffectFit, others: Sequence[EffectFit
         columns = problem.basis(one.effect, one.shape)
         friction = friction - columns.friction @ one.coefficients
         load = load - columns.load @ one.coefficients
-    added = problem.basis(payload.effect, payload.shape)
-    return _Torques(
-        left=Basis(friction[:, np.newaxis], load[:, np.newaxis]),
-        base=Basis(problem.friction_base, problem.load_base),
-        added=Basis(*((one @ payload.coefficients)[:, np.newaxis] for one in added)),
-        scaled=problem.basis(TORQUE_SCALE, payload.shape),
-        turned=problem.basis(POSITION_OFFSET, payload.shape),
-    )
+    base = Basis(problem.friction_base, problem.load_base)
+    return _Torques.of(problem, payload, (friction, load), base)
 
 
 def _joined(parts: Sequence[Basis]) -> Basis:

@@ -107,9 +107,7 @@ class Known:
         channel : {"friction", "load"}
             The channel.
         """
-        free = np.array(CHANNELS) == channel
-        friction, load = np.where(free, np.inf, self.components.most_drift)
-        components = replace(self.components, most_drift=(float(friction), float(load)))
+        components = self.components.with_most_drift(CHANNELS.index(channel), np.inf)
         fit = fit_variances(components, self.products, self.count, self.fits[0].variances)
         return replace(self, components=components, fits=(fit,))
 
