@@ -94,7 +94,7 @@ def diagnose_joint(
         ),
         effects,
     )
-    return replace(found, without_temperature=lost)
+    return replace(found, without_temperature=lost.without, stuck_temperature=lost.stuck)
 
 
 def _diagnosed(

@@ -68,6 +68,8 @@ class Diagnosis:
         Bins that were left out because the logged torque had not settled.
     without_temperature : int
         Number of pairs that were left out because the log has no temperature of them.
+    stuck_temperature : int
+        Number of pairs that were left out because their temperature stood still and then jumped.
     empirical : Empirical or None
         A term for what is left without a known cause; none where it is not worth using.
     """
@@ -98,4 +100,5 @@ class Diagnosis:
     load_margin: float | None = None
     settling: Settling | None = None
     without_temperature: int = 0
+    stuck_temperature: int = 0
     empirical: Empirical | None = None

@@ -152,8 +152,16 @@ def _with_temperature(
 ) -> tuple[pd.DataFrame, list[str]]:
     """Return the rows with a known temperature, and notes on the others."""
     known, lost = with_temperature(torques, kind)
-    if lost:
-        return known, [f"{lost} pairs without {kind} temperature were not used"]
+    notes = []
+    if lost.without:
+        notes.append(f"{lost.without} pairs without {kind} temperature were not used")
+    if lost.stuck:
+        notes.append(
+            f"{lost.stuck} pairs were not used whose {kind} temperature stood still and then"
+            " jumped, as where a sensor is no longer read"
+        )
+    if notes:
+        return known, notes
     if temperature_of(known, kind).notna().all():
         return known, []
     if kind != "motor":

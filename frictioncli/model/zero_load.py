@@ -1,7 +1,11 @@
 """Friction of each pair without load, as in Figures 5, 6, 9 and 10 of the source paper."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pandas as pd
+
+from frictioncli.model.stuck_reading import is_stuck
 
 PAIR_KEY = ["run", "joint", "pair"]
 """What identifies a pair of counter-directed moves."""
@@ -45,7 +49,23 @@ def friction_at_zero_load(torques: pd.DataFrame, alpha: float) -> pd.DataFrame:
     return pairs.reset_index().sort_values(["run", "joint", "time"], ignore_index=True)
 
 
-def with_temperature(rows: pd.DataFrame, kind: str) -> tuple[pd.DataFrame, int]:
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """Pairs that have no temperature to be used with.
+
+    Attributes
+    ----------
+    without : int
+        Pairs without a reading.
+    stuck : int
+        Pairs whose reading stood still and then jumped.
+    """
+
+    without: int = 0
+    stuck: int = 0
+
+
+def with_temperature(rows: pd.DataFrame, kind: str) -> tuple[pd.DataFrame, LeftOut]:
     """Return the rows with a known temperature, and of how many pairs it is not.
 
     Where no row has one, all are returned: friction is then a function of speed and load alone.
@@ -57,10 +77,28 @@ def with_temperature(rows: pd.DataFrame, kind: str) -> tuple[pd.DataFrame, int]:
     kind : {"motor", "housing", "mean"}
         As of :func:`temperature_of`.
     """
-    usable = temperature_of(rows, kind).notna()
+    reading = temperature_of(rows, kind)
+    read = reading.notna()
+    if not read.any():
+        return rows, LeftOut()
+    stuck = _with_stuck_reading(rows.assign(reading=reading))
+    usable = read & ~stuck
     if usable.all() or not usable.any():
-        return rows, 0
-    return rows[usable], int(rows.loc[~usable].groupby(PAIR_KEY, observed=True).ngroups)
+        return rows, LeftOut()
+    return rows[usable], LeftOut(without=_pairs(rows[~read]), stuck=_pairs(rows[stuck]))
+
+
+def _pairs(rows: pd.DataFrame) -> int:
+    return int(rows.groupby(PAIR_KEY, observed=True).ngroups)
+
+
+def _with_stuck_reading(rows: pd.DataFrame) -> pd.Series:
+    """Return which rows have a reading that stood still and then jumped."""
+    pairs = rows.groupby(PAIR_KEY, sort=False, observed=True)[["time", "reading"]].first()
+    pairs = pairs.sort_values("time").assign(stuck=False)
+    for _, run in pairs.groupby(level=["run", "joint"], observed=True):
+        pairs.loc[run.index, "stuck"] = is_stuck(run["time"].to_numpy(), run["reading"].to_numpy())
+    return rows[PAIR_KEY].join(pairs["stuck"], on=PAIR_KEY)["stuck"].astype(bool)
 
 
 def temperature_of(pairs: pd.DataFrame, kind: str) -> pd.Series:

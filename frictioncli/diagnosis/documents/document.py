@@ -222,6 +222,8 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
         Bins that were left out because the logged torque had not settled; none where none were.
     without_temperature : int
         Number of pairs that were left out because the log has no temperature of them.
+    stuck_temperature : int
+        Number of pairs that were left out because their temperature stood still and then jumped.
     torque_unit : str
         Unit of torque.
     load_unit : str or None
@@ -251,6 +253,7 @@ class DiagnosisDocument(msgspec.Struct, frozen=True, kw_only=True):
     ramps: RampsRecord | None = None
     settling: Settling | None = None
     without_temperature: int = 0
+    stuck_temperature: int = 0
     torque_unit: str
     load_unit: str | None = None
     runs: tuple[str, ...]

@@ -105,6 +105,7 @@ def diagnosis_document(
         ramps=None if ramps is None else ramps_record(ramps, diagnosis.torque_unit),
         settling=diagnosis.settling,
         without_temperature=diagnosis.without_temperature,
+        stuck_temperature=diagnosis.stuck_temperature,
         torque_unit=diagnosis.torque_unit,
         load_unit=TorqueUnits.of_diagnosis(diagnosis).load
         if diagnosis.base.has_load_channel

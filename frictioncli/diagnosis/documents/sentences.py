@@ -136,6 +136,11 @@ def left_out_text(document: DiagnosisDocument) -> str:
     parts = []
     if document.without_temperature:
         parts.append(f"{document.without_temperature} pairs without temperature")
+    if document.stuck_temperature:
+        parts.append(
+            f"{document.stuck_temperature} pairs whose temperature stood still and then jumped, as"
+            " where a sensor is no longer read"
+        )
     if settling := document.settling:
         pairs = f", among them all of {settling.pairs} pairs" if settling.pairs else ""
         parts.append(
