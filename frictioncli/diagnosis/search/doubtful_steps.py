@@ -1,17 +1,14 @@
 """Changes that may be something else: by when they come, and at which temperature."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from frictioncli.arrays import Array, Flags
 from frictioncli.diagnosis.data.motion_history import pauses_of
 from frictioncli.diagnosis.data.problem import Problem
-from frictioncli.diagnosis.data.temperature_direction import temperature_direction
 from frictioncli.diagnosis.fit.columns import RANK
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.confounded import (
     NO_TEMPERATURE,
     are_warmer_or_colder,
@@ -20,11 +17,8 @@ from frictioncli.diagnosis.search.confounded import (
 from frictioncli.effects.history import present
 from frictioncli.effects.pair_series import measured_share
 from frictioncli.effects.payload_change import EFFECT as PAYLOAD_CHANGE
-from frictioncli.effects.rest_recovery import EFFECT as REST_RECOVERY
 from frictioncli.effects.step_change import EFFECT as STEP_CHANGE
-from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 from frictioncli.linear_algebra import least_squares_residual
-from frictioncli.wording import in_words
 
 _START_OF_RUN = 0.15
 """Share of the pairs of a run that are at its start."""
@@ -39,19 +33,6 @@ _SEVERAL = 2
 
 _PAUSE = 120.0
 """Time from pair to pair in which the temperature of a joint may become another one. [s]"""
-
-_AT_TURN = 0.9
-"""Share of the pairs in which a change is there as the joint cools down, and not as it warms up, or
-the other way round, from which it comes with the turn. The gear turns later than the motor."""
-
-_PART_OF_OTHER = 1 / 3
-"""Size of such a change, relative to a cause that differs between warming up and cooling down, up
-to which it may be what the form of that cause misses."""
-
-_COMES_WITH_TURN = (
-    "it comes as the joint turns from warming up to cooling down, where errors in the form of"
-    " {other} may look the same"
-)
 
 _REST = 10.0
 """Pause between two pairs that is a rest. [s]"""
@@ -119,47 +100,6 @@ def doubtful_with_new_run(fit: EffectFit, problem: Problem, new: Problem) -> str
     if fit.effect is not STEP_CHANGE or not has_temperature(problem):
         return ""
     return _at_temperature(fit, (problem, new))
-
-
-def without_forms_at_turns(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
-    """Return causes of which no change has a name that another may miss as the joint turns to cool.
-
-    A lag of the gear changes its sign there, and rests between moves begin there or end. Friction
-    after a rest shows in the load as well, as it decays between the two directions of a pair.
-
-    Parameters
-    ----------
-    causes : sequence of Cause
-        Causes with their standing.
-    problem : Problem
-        The joint's rows.
-    """
-    judged = list(causes)
-    named = [one for one in causes if one.standing == "named"]
-    for number, change in enumerate(judged):
-        if change.standing != "named" or change.fit.effect.moments is None:
-            continue
-        in_friction = change.fit.effect.channel == "friction"
-        for other in named:
-            may_miss = other.fit.effect is REST_RECOVERY or (
-                other.fit.effect.name == THERMAL_LAG.name and in_friction
-            )
-            small = change.visible < _PART_OF_OTHER * other.visible
-            if may_miss and small and _comes_with_turn(change.fit, problem):
-                reason = _COMES_WITH_TURN.format(other=in_words(other.fit.effect.name))
-                judged[number] = replace(change, standing="undetermined", reason=reason)
-    return tuple(judged)
-
-
-def _comes_with_turn(fit: EffectFit, problem: Problem) -> bool:
-    """Return whether a change is there as the joint cools down, or only as it warms up."""
-    there = present(measured_share(problem.all_runs)[problem.rows], fit.shape)
-    direction = temperature_direction(problem.table)
-    known = direction != 0.0
-    if not known.any():
-        return False
-    cooling = float(np.mean(there[known] == (direction[known] < 0.0)))
-    return max(cooling, 1.0 - cooling) >= _AT_TURN
 
 
 def _there(fit: EffectFit, problem: Problem) -> Flags:

@@ -10,14 +10,16 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
+from frictioncli.diagnosis.search.changes_at_turns import hysteresis_in, without_forms_at_turns
 from frictioncli.diagnosis.search.confounded import (
     confounded,
     hardly_repeats,
     without_forms_of_ends,
     without_forms_of_others,
 )
-from frictioncli.diagnosis.search.doubtful_steps import doubtful_change, without_forms_at_turns
+from frictioncli.diagnosis.search.doubtful_steps import doubtful_change
 from frictioncli.diagnosis.search.margin import channel_margin
+from frictioncli.diagnosis.search.misread_torque import misread_torque_in
 from frictioncli.diagnosis.search.possible import (
     ON_BOUND,
     beyond_bounds,
@@ -147,7 +149,8 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
         return replace(cause, standing="undetermined", reason="it may be noise")
     doubt = _impossible(cause, problem)
     doubt = doubt or confounded(cause.fit.effect, problem)
-    doubt = doubt or doubtful_change(cause.fit, problem) or hardly_repeats(cause.fit, problem)
+    doubt = doubt or doubtful_change(cause.fit, problem) or hysteresis_in(cause.fit, problem)
+    doubt = doubt or misread_torque_in(cause.fit, problem) or hardly_repeats(cause.fit, problem)
     if doubt:
         return replace(cause, standing="undetermined", reason=doubt)
     if low > margin:
