@@ -38,6 +38,7 @@ EFFECT = Effect(
             upper=30.0,
             description="Part of the constant load torque that does not load the gear",
             of_load=True,
+            noun="constant load torque that does not load the gear",
         ),
     ),
     basis=basis,

@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from frictioncli.arrays import Array
+from frictioncli.wording import in_words
 
 Search = Literal["linear", "logarithmic"]
 
@@ -32,6 +33,8 @@ class Parameter:
     within : str
         Name of another coefficient of the same effect, which is at least as large in amount; may be
         empty.
+    noun : str
+        What it is called in a sentence; its name if empty.
     """
 
     name: str
@@ -44,12 +47,18 @@ class Parameter:
     points: int = 10
     of_load: bool = False
     within: str = ""
+    noun: str = ""
 
     def __post_init__(self) -> None:
         if not self.lower < self.upper:
             raise ValueError(f"{self.name}: bounds {self.lower} to {self.upper}")
         if self.search == "logarithmic" and not self.lower > 0:
             raise ValueError(f"{self.name}: a logarithmic search cannot start at {self.lower}")
+
+    @property
+    def in_words(self) -> str:
+        """What it is called in a sentence."""
+        return self.noun or in_words(self.name)
 
     def grid(self) -> Array:
         """Return the values of the grid from bound to bound, shape (points,)."""

@@ -73,7 +73,8 @@ EFFECT = Effect(
         ),
     ),
     statement=(
-        "A share of {share} of the viscous friction follows speed to the power {exponent}, not 1/2."
+        "Viscous friction departs from the square root of speed {share} times as far as the power"
+        " {exponent} would."
     ),
     confounders=("linear_viscous", "quadratic_drag", "stribeck"),
     experiment=(

@@ -171,7 +171,7 @@ def _moved(
             if alone or abs(value - was) > most:
                 other = in_words(refused[0].fit.effect.name)
                 why = (
-                    f"its {in_words(parameter.name)} depends on a physically impossible {other}:"
+                    f"its {parameter.in_words} depends on a physically impossible {other}:"
                     f" {with_unit(parameter, was)} with it, {with_unit(parameter, value)} without"
                 )
                 found.append((one, why))

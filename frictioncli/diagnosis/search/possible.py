@@ -74,7 +74,7 @@ def _impossible_value(parameter: Parameter, value: float) -> str:
     shown = with_unit(parameter, value)
     if parameter.unit.startswith("%"):
         return f"it would be {shown}, which is physically impossible"
-    return f"its {in_words(parameter.name)} would be {shown}, which is physically impossible"
+    return f"its {parameter.in_words} would be {shown}, which is physically impossible"
 
 
 def with_unit(parameter: Parameter, value: float) -> str:
@@ -107,7 +107,7 @@ def _larger_than_whole(fit: EffectFit, errors: float) -> str:
         excess = float(np.sum(signs * fit.coefficients))
         if excess > errors * float(np.sqrt(max(float(signs @ fit.covariance @ signs), 0.0))):
             return (
-                f"its {in_words(parameter.name)} would exceed its {in_words(parameter.within)},"
+                f"its {parameter.in_words} would exceed its {in_words(parameter.within)},"
                 " which is physically impossible"
             )
     return ""
@@ -160,7 +160,7 @@ def smoother_than_late(smeared: EffectFit, late: EffectFit, *, alone: bool = Tru
         return f"{_impossible_value(moment, value)} of a torque that is late by {shown} on average"
     if not alone and _OF_UNIFORM * error > greatest:
         return (
-            f"these data determine its {in_words(moment.name)} only to"
+            f"these data determine its {moment.in_words} only to"
             f" ±{Z95 * error:.2g}{_unit(moment)}, and a torque that is late by {shown} has"
             f" {greatest:.2g}{_unit(moment)} at most"
         )
@@ -181,7 +181,7 @@ def undetermined(fit: EffectFit, problem: Problem) -> str:
         The joint's rows.
     """
     unknown = (
-        f"these data determine its {in_words(parameter.name)} only to"
+        f"these data determine its {parameter.in_words} only to"
         f" ±{Z95 * error:.2g}{_unit(parameter)}; possible is {low:.3g} to"
         f" {high:.3g}{_unit(parameter)}"
         for parameter, _, error, low, high in _coefficients(fit, problem)
