@@ -37,7 +37,7 @@ _IS_HYSTERESIS = (
     " gradually how fast the joint warms or cools would look the same"
 )
 
-_TIME_CONSTANTS = (300.0, 900.0, 2700.0, 8100.0)
+_TIME_CONSTANTS = (600.0, 1800.0, 5400.0)
 """Times over which friction may follow the change of the temperature. [s]"""
 
 
