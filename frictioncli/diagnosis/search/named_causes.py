@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
+from frictioncli.diagnosis.search.explained_share import explains_little
 from frictioncli.diagnosis.search.judging import JudgedCauses, Judging, names_of
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.payload_rivals import with_payload_rivals
@@ -84,8 +85,14 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
     there = beyond_doubt_without_a_name(first.causes, names_of(judged.named), judging.margin)
     if structure is None and all(one.fit.effect.measurement for one in rivalled.causes):
         structure = change_over_time(there)
+    causes = rivalled.causes
+    if structure is None:
+        reason = explains_little(causes, rivalled.step, judging, judged.found.floor)
+        lost = {one.fit.effect.name for one in causes if not one.fit.effect.measurement}
+        if reason:
+            return named_causes(judging, first.without_names(lost, "visible", reason))
     return NamedCauses(
-        causes=rivalled.causes,
+        causes=causes,
         others=(*others, *lost_on_the_way, *rivalled.replaced),
         structure=structure,
         measurement=judged.found.measurement,

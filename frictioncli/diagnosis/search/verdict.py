@@ -22,7 +22,8 @@ def visible_causes(
     """Return what was found and is not named, with the reason, largest first.
 
     An effect of the measurement that nothing speaks for is not worth a line, unless it was refused
-    and may be in the size of a cause.
+    and may be in the size of a cause. One that was refused and then stands beside fewer causes has
+    one line.
 
     Parameters
     ----------
@@ -41,10 +42,12 @@ def visible_causes(
 
     alone = {one.effects[0] for one in causes if len(one.effects) == 1}
     left = [one for one in unnamed if is_worth_a_line(one)]
+    told = {one.fit.effect.name for one in left}
     left += [
         one
         for one in refused
-        if is_worth_a_line(one) or _IN_SIZE_OF.get(one.fit.effect.name) in alone
+        if one.fit.effect.name not in told
+        and (is_worth_a_line(one) or _IN_SIZE_OF.get(one.fit.effect.name) in alone)
     ]
 
     def share(cause: Cause) -> float:
