@@ -260,3 +260,16 @@ def test_structure_of_the_load_is_the_same_for_loads_to_either_side():
     mirrored = replace(data, table=replace(data.table, load=-data.table.load))
     place = (("load",), "friction")
     np.testing.assert_allclose(axis_columns(data)[place], axis_columns(mirrored)[place])
+
+
+@pytest.mark.parametrize(("ripple", "is_named"), [(2.0, True), (0.7, False)])
+def test_a_cause_that_explains_most_of_the_structure_keeps_its_name(ripple, is_named):
+    """Beside another cause that looks like it, the base leaves less of it than it explains."""
+    data = problem(3, friction=lambda rows: ripple * SHORT(rows))
+    torque = 1.3 * np.exp(-np.square((data.table.position - 40.0) / 9.0))
+    step, cause = accepted(replace(data, friction=data.friction + torque))
+    small = replace(cause, visible=0.3)
+    causes, structure = understood(step, [small], MARGIN, ALPHA)
+    assert structure.size > small.visible / 3
+    assert structure.axes in {("position",), ("load",)}
+    assert (causes == (small,)) is is_named

@@ -41,31 +41,75 @@ _TIME_CONSTANTS = (600.0, 1800.0, 5400.0)
 """Times over which friction may follow the change of the temperature. [s]"""
 
 
-def hysteresis_in(fit: EffectFit, problem: Problem) -> str:
-    r"""Return why a step of friction may be a hysteresis over the temperature; empty if not.
+def without_changes_at_turns(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
+    """Return causes of which no change has a name that may be another thing at the turn.
 
-    It comes with the turn, and friction in proportion to how far the temperature is from its mean
-    over the last minutes, :math:`T - F_\theta(T)`, explains no less than the step does. Stresses
-    of parts that warm at different rates change the preload of a bearing so.
+    A lag of the gear changes its sign there, and rests between moves begin there or end: what the
+    form of another cause misses may look like a small change. Friction after a rest shows in the
+    load as well, as it decays between the two directions of a pair. A step of friction may be a
+    hysteresis over the temperature.
+
+    Parameters
+    ----------
+    causes : sequence of Cause
+        Causes with their standing.
+    problem : Problem
+        The joint's rows.
+    """
+    judged = list(causes)
+    named = [one for one in causes if one.standing == "named"]
+    for number, change in enumerate(judged):
+        is_change = change.standing == "named" and change.fit.effect.moments is not None
+        if not is_change or not _comes_with_turn(change.fit, problem):
+            continue
+        others = [one for one in named if one is not change]
+        reason = _form_of_others(change, others) or hysteresis_in(
+            change.fit, [one.fit for one in others], problem
+        )
+        if reason:
+            judged[number] = replace(change, standing="undetermined", reason=reason)
+    return tuple(judged)
+
+
+def _form_of_others(change: Cause, others: Sequence[Cause]) -> str:
+    """Return why a change at the turn may be what the form of another cause misses."""
+    in_friction = change.fit.effect.channel == "friction"
+    for other in others:
+        may_miss = other.fit.effect is REST_RECOVERY or (
+            other.fit.effect.name == THERMAL_LAG.name and in_friction
+        )
+        if may_miss and change.visible < _PART_OF_OTHER * other.visible:
+            return _COMES_WITH_TURN.format(other=in_words(other.fit.effect.name))
+    return ""
+
+
+def hysteresis_in(fit: EffectFit, others: Sequence[EffectFit], problem: Problem) -> str:
+    r"""Return why a step of friction at the turn may be a hysteresis; empty if not.
+
+    Friction in proportion to how far the temperature is from its mean over the last minutes,
+    :math:`T - F_\theta(T)`, explains no less than the step does. Stresses of parts that warm at
+    different rates change the preload of a bearing so.
 
     Parameters
     ----------
     fit : EffectFit
         The effect, with its history.
+    others : sequence of EffectFit
+        Effects that stand beside it.
     problem : Problem
         The joint's rows.
     """
-    if fit.effect is not STEP_CHANGE or not _comes_with_turn(fit, problem):
+    if fit.effect is not STEP_CHANGE:
         return ""
     layout = problem.layout
-    base, _ = base_rows(problem)
-    step, _ = problem.basis(fit.effect, fit.shape)
     rows = np.column_stack(
         [problem.friction_misfit, problem.table.measured_temperature, problem.table.viscous]
     )
     misfit, temperature, viscous = layout.means(rows).T
     levels = layout.run[:, np.newaxis] == np.unique(layout.run)
-    beside = np.hstack([layout.means(base), levels])
+    columns = [base_rows(problem)[0], *(problem.basis(one.effect, one.shape)[0] for one in others)]
+    beside = np.hstack([layout.means(np.hstack(columns)), levels])
+    step, _ = problem.basis(fit.effect, fit.shape)
 
     def left_by(column: Array) -> float:
         design = np.column_stack([beside, column])
@@ -82,36 +126,6 @@ def hysteresis_in(fit: EffectFit, problem: Problem) -> str:
     ]
     least = min(left_by(factor * one) for one in late for factor in (1.0, viscous))
     return _IS_HYSTERESIS if least <= left_by(layout.means(step)) else ""
-
-
-def without_forms_at_turns(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
-    """Return causes of which no change has a name that another may miss as the joint turns to cool.
-
-    A lag of the gear changes its sign there, and rests between moves begin there or end. Friction
-    after a rest shows in the load as well, as it decays between the two directions of a pair.
-
-    Parameters
-    ----------
-    causes : sequence of Cause
-        Causes with their standing.
-    problem : Problem
-        The joint's rows.
-    """
-    judged = list(causes)
-    named = [one for one in causes if one.standing == "named"]
-    for number, change in enumerate(judged):
-        if change.standing != "named" or change.fit.effect.moments is None:
-            continue
-        in_friction = change.fit.effect.channel == "friction"
-        for other in named:
-            may_miss = other.fit.effect is REST_RECOVERY or (
-                other.fit.effect.name == THERMAL_LAG.name and in_friction
-            )
-            small = change.visible < _PART_OF_OTHER * other.visible
-            if may_miss and small and _comes_with_turn(change.fit, problem):
-                reason = _COMES_WITH_TURN.format(other=in_words(other.fit.effect.name))
-                judged[number] = replace(change, standing="undetermined", reason=reason)
-    return tuple(judged)
 
 
 def _comes_with_turn(fit: EffectFit, problem: Problem) -> bool:

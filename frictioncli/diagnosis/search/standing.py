@@ -10,7 +10,7 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import main_channel
 from frictioncli.diagnosis.fit.left_by_base import Z95
 from frictioncli.diagnosis.search.cause import CONVINCING, Cause
-from frictioncli.diagnosis.search.changes_at_turns import hysteresis_in, without_forms_at_turns
+from frictioncli.diagnosis.search.changes_at_turns import without_changes_at_turns
 from frictioncli.diagnosis.search.confounded import (
     confounded,
     hardly_repeats,
@@ -82,7 +82,7 @@ def with_standing(
     """
     judged = [_judged(cause, problem, margin, alpha) for cause in causes]
     told = without_forms_of_others(without_forms_of_ends(judged, problem))
-    return without_forms_at_turns(told, problem)
+    return without_changes_at_turns(told, problem)
 
 
 def without_cancelling(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:
@@ -149,7 +149,7 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
         return replace(cause, standing="undetermined", reason="it may be noise")
     doubt = _impossible(cause, problem)
     doubt = doubt or confounded(cause.fit.effect, problem)
-    doubt = doubt or doubtful_change(cause.fit, problem) or hysteresis_in(cause.fit, problem)
+    doubt = doubt or doubtful_change(cause.fit, problem)
     doubt = doubt or misread_torque_in(cause.fit, problem) or hardly_repeats(cause.fit, problem)
     if doubt:
         return replace(cause, standing="undetermined", reason=doubt)

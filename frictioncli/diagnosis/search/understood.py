@@ -45,7 +45,9 @@ def understood(
     A cause loses its name to structure along its own axis that is nearly as large, or along the
     temperature if it goes with that; a change of friction to any that is larger; and what follows
     the temperature to a larger one along the time. Both may be one thing that no effect explains.
-    The structure is then what is left without the cause.
+    The structure is then what is left without the cause. A cause keeps its name where that is many
+    times as large along the same axes: beside another one that looks like it, the base leaves less
+    of it than it explains.
 
     Parameters
     ----------
@@ -66,8 +68,17 @@ def understood(
     if len(kept) < len(named):
         lost = {one.fit.effect.name for one in named} - {one.fit.effect.name for one in kept}
         rest = [one for one in step.accepted if one.effect.name not in lost]
-        structure = unnamed_structure(Step.of(step.precomputed, rest), margin, alpha) or structure
+        without = unnamed_structure(Step.of(step.precomputed, rest), margin, alpha)
+        if without is not None and _is_mostly_explained(structure, without):
+            return named, structure
+        structure = without or structure
     return kept, structure
+
+
+def _is_mostly_explained(structure: Structure, without: Structure) -> bool:
+    """Return whether the causes beside which structure is left explain most of it without them."""
+    same = structure.channel == without.channel and structure.axes == without.axes
+    return same and structure.size <= MOST_LEFT * without.size
 
 
 def structure_beside(
