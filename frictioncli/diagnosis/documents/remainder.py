@@ -29,12 +29,14 @@ def remainder_record(diagnosis: Diagnosis) -> RemainderRecord | None:
     if rmse <= ADEQUATE * floor:
         return None
     most = left_structure(problem, friction, load)
+    size = float(np.sqrt(rmse**2 - floor**2))
     return RemainderRecord(
         basis="within_run" if diagnosis.held_out is None else "new_run",
         rmse=rmse,
         noise_floor=floor,
-        size=float(np.sqrt(rmse**2 - floor**2)),
+        size=size,
         axis=most.axis,
         channel=most.channel,
-        axis_size=most.size,
+        # the noise that is taken off is another estimate in either
+        axis_size=min(most.size, size),
     )

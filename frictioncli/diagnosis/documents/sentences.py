@@ -5,7 +5,7 @@ from frictioncli.diagnosis.documents.empirical_record import EmpiricalGainRecord
 from frictioncli.diagnosis.search.effect_size import TAKEN_BY_BASE
 from frictioncli.diagnosis.search.margin import LEAST_MARGIN
 from frictioncli.effects import BY_NAME
-from frictioncli.wording import in_words, list_text, number_text, quantity_text
+from frictioncli.wording import count_text, in_words, list_text, number_text, quantity_text
 
 _STANDING = {
     "named": "named",
@@ -135,14 +135,15 @@ def left_out_text(document: DiagnosisDocument) -> str:
     """
     parts = []
     if document.without_temperature:
-        parts.append(f"{document.without_temperature} pairs without temperature")
+        parts.append(f"{count_text(document.without_temperature, 'pair')} without temperature")
     if document.stuck_temperature:
         parts.append(
-            f"{document.stuck_temperature} pairs whose temperature stood still and then jumped, as"
-            " where a sensor is no longer read"
+            f"{count_text(document.stuck_temperature, 'pair')} whose temperature stood still and"
+            " then jumped, as where a sensor is no longer read"
         )
     if settling := document.settling:
-        pairs = f", among them all of {settling.pairs} pairs" if settling.pairs else ""
+        whole = count_text(settling.pairs, "pair")
+        pairs = f", among them all of {whole}" if settling.pairs else ""
         parts.append(
             f"{settling.bins} angle bins{pairs} in the first {settling.seconds:.2g} s of a move at"
             " constant speed, where the delayed or filtered torque still contains the acceleration"

@@ -11,6 +11,9 @@ from frictioncli.diagnosis.fit.extension import Extension, misfits
 BLOCK = 12
 """Pairs per block of the bootstrap: the misfits of neighbouring pairs are not independent."""
 
+_BLOCKS = 6
+"""Least number of blocks: those of a run of few pairs are shorter."""
+
 _DRAWS = 1000
 """Bootstrap samples."""
 
@@ -138,7 +141,8 @@ def reduction_interval(
     """
     pair = problem.layout.row_pair
     sums = np.column_stack([np.bincount(pair, weights=values) for values in (before, after)])
-    blocks = np.add.reduceat(sums, np.arange(0, len(sums), BLOCK), axis=0)
+    length = max(min(BLOCK, len(sums) // _BLOCKS), 1)
+    blocks = np.add.reduceat(sums, np.arange(0, len(sums), length), axis=0)
     generator = np.random.default_rng(seed)
     drawn = blocks[generator.integers(0, len(blocks), (_DRAWS, len(blocks)))].sum(axis=1)
     share = 1 - np.sqrt(drawn[:, 1] / np.maximum(drawn[:, 0], 1e-300))

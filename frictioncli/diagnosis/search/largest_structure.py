@@ -216,15 +216,17 @@ def _size(misfit: Array, bins: Indices, pair: Indices) -> tuple[float, tuple[flo
     With its 95 % interval.
     """
     pairs = int(pair.max(initial=0)) + 1
-    cells, cell = np.unique(bins * pairs + pair, return_inverse=True)
-    means = np.bincount(cell, misfit) / np.bincount(cell)
+    cells, cell, rows = np.unique(bins * pairs + pair, return_inverse=True, return_counts=True)
+    means = np.bincount(cell, misfit) / rows
     own = cells // pairs
-    count = np.bincount(own)
+    count, inside = np.bincount(own), np.bincount(own, rows)
     used = count > 1
-    mean = np.bincount(own, means)[used] / count[used]
-    scatter = np.bincount(own, np.square(means))[used] / count[used] - np.square(mean)
-    error = np.maximum(scatter, 0.0) / (count[used] - 1)
-    weight = count[used] / max(count[used].sum(), 1)
+    mean = np.bincount(own, rows * means) / np.maximum(inside, 1.0)
+    # a pair counts by its rows, as in the RMS of the misfit
+    scatter = np.bincount(own, np.square(rows * (means - mean[own])))[used]
+    count, inside, mean = count[used], inside[used], mean[used]
+    error = scatter / np.square(inside) * count / (count - 1)
+    weight = inside / max(inside.sum(), 1.0)
     square = float(weight @ (np.square(mean) - error))
     reach = 2 * Z95 * float(np.sqrt(np.sum(np.square(weight * mean) * error)))
     size, low, high = (

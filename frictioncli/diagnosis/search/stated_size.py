@@ -161,7 +161,24 @@ def sizes_in_model(
         weighted_fit = sizing_fit(step, measurement, fits)
         beside = fitted_sizes(causes, again, step.problem, weighted_fit, span)
         stated = tuple(_with_either(one, other) for one, other in zip(stated, beside, strict=True))
-    return behind_sensor(stated, measurement, step.problem, base, span)
+    stated = behind_sensor(stated, measurement, step.problem, base, span)
+    return tuple(_holding_found(one, found) for one, found in zip(stated, causes, strict=True))
+
+
+def _holding_found(stated: Cause, found: Cause) -> Cause:
+    """Return a cause whose interval reaches what was found of it where that is surely more.
+
+    Where the temperature only rises, parameters of the base that no joint has take most of a lag.
+    """
+    least, most = found.visible_interval
+    if found.fit.effect.measurement or least <= stated.visible_interval[1]:
+        return stated
+    whole = stated.size_interval
+    return replace(
+        stated,
+        visible_interval=(stated.visible_interval[0], most),
+        size_interval=whole and (whole[0], max(whole[1], most)),
+    )
 
 
 def _with_either(one: Cause, other: Cause) -> Cause:
