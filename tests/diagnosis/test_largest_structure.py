@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from frictioncli.diagnosis.search.largest_structure import inadequacy, size_along
+from frictioncli.diagnosis.search.largest_structure import _size, inadequacy, size_along
 from tests.diagnosis.dense_noise import problem
 
 FLOOR = 0.02
@@ -61,3 +61,17 @@ def test_the_size_along_an_axis_is_that_of_what_varies_with_it():
         np.std(torque), rel=0.05
     )
     assert size_along(data, "position", 2.0 + torque + noise) < 0.2 * np.std(torque)
+
+
+def test_a_pair_counts_by_its_rows_as_in_the_rms():
+    """Half of the pairs cross two bins each, and only they are misfitted."""
+    pair = np.repeat(np.arange(40), np.where(np.arange(40) % 2, 2, 20))
+    short = pair % 2 == 1
+    bins = np.where(np.arange(len(pair)) % 2, 0, 1)
+    misfit = np.where(short, 1.0, 0.0) * np.where(bins, 1.0, -1.0)
+    size, _ = _size(misfit, bins, pair)
+    # the mean of either bin is 1 in one row of eleven, without what the scatter gives
+    assert size == pytest.approx(1 / 11, rel=0.2)
+    assert size < np.sqrt(np.mean(np.square(misfit)))
+    size, (low, high) = _size(np.where(bins, 1.0, -1.0), bins, pair)
+    assert (size, low, high) == pytest.approx((1.0, 1.0, 1.0))

@@ -17,6 +17,7 @@ from frictioncli.diagnosis.search.fitted_size import fitted_sizes
 from frictioncli.diagnosis.search.measurement import beside_base, measurement_causes
 from frictioncli.diagnosis.search.precomputed import Precomputed
 from frictioncli.diagnosis.search.stated_size import (
+    _holding_found,
     sizes_beside_each_other,
     sizes_in_model,
     sizing_fit,
@@ -299,3 +300,22 @@ def test_the_size_of_a_lag_is_the_friction_that_the_base_cannot_have(time_consta
         halves.append(np.sqrt(((high - low) / 2) ** 2 - (1.96 * 0.05 * one.visible) ** 2))
     assert np.mean(sizes) == pytest.approx(true, rel=0.01)
     assert np.mean(halves) / 1.96 == pytest.approx(np.std(sizes), rel=0.35)
+
+
+@pytest.mark.parametrize(
+    ("found", "interval"),
+    [
+        # surely more was found: it may be as much
+        ((0.15, 0.19), (0.03, 0.19)),
+        # both agree
+        ((0.04, 0.19), (0.03, 0.05)),
+    ],
+)
+def test_an_interval_reaches_what_was_found_where_that_is_surely_more(found, interval):
+    stated = replace(cause(interval=(0.03, 0.05)), size_interval=(0.04, 0.06))
+    held = _holding_found(stated, cause(interval=found))
+    assert held.visible_interval == interval
+    assert held.size_interval == (0.04, max(0.06, interval[1]))
+    delay = cause(BY_NAME["torque_delay"], interval=found)
+    of_log = replace(delay, visible_interval=(0.03, 0.05))
+    assert _holding_found(of_log, delay) is of_log

@@ -133,3 +133,31 @@ def test_a_load_at_an_angle_in_a_late_torque_is_one_of_both_directions():
     assert form.coefficients["peak"] == pytest.approx(3.0, rel=0.15)
     assert form.shape["lag"] == pytest.approx(0.1, abs=0.02)
     assert described(form, "N·m").startswith("a bump of the load of ")
+
+
+@pytest.mark.parametrize(
+    ("forward", "reverse", "said"),
+    [
+        (7.9, 8.0, "a bump of friction of 8.0 N·m at 70.0 deg, nearly the same in both directions"),
+        (
+            -7.9,
+            -8.0,
+            "a dent of friction of 8.0 N·m at 70.0 deg, nearly the same in both directions",
+        ),
+        (4.0, 0.0006, "4.0 N·m more in forward motion, none in reverse"),
+        (4.0, -1.0, "4.0 N·m more in forward motion, 1.0 N·m less in reverse"),
+    ],
+)
+def test_what_is_nearly_the_same_in_both_directions_or_none_in_one_is_said_so(
+    forward, reverse, said
+):
+    form = FormFunction(
+        kind="uneven_bump",
+        axes=("position",),
+        channel="friction",
+        shape={"centre": 70.0, "width": 8.0, "lag": 0.0},
+        coefficients={"forward": forward, "reverse": reverse},
+        formula="",
+        sign=1.0,
+    )
+    assert said in described(form, "N·m")

@@ -45,6 +45,12 @@ _MOSTLY = 2.0
 """Ratio of load to friction from which on torque that differs in both directions is a load: where
 that is larger, friction is, too."""
 
+_ALIKE = 0.1
+"""Ratio of load to friction up to which a bump is nearly the same in both directions."""
+
+_NOTHING = 0.02
+"""Share of the torque in one direction up to which that in the other is none."""
+
 _NO_RANGES: Mapping[str, Range] = MappingProxyType({})
 
 
@@ -190,7 +196,14 @@ def _uneven_bump(form: FormFunction, unit: str, _: Mapping[str, Range]) -> str:
             f" {_number(shape['centre'])} deg, {wide}, where friction is"
             f" {_more(friction, unit)}{_late(form)}"
         )
-    forward, reverse = (_more(one, unit) for one in sizes)
+    if abs(load) < _ALIKE * abs(friction):
+        return (
+            f"a {'bump' if friction > 0 else 'dent'} of friction of {_size(friction, unit)} at"
+            f" {_number(shape['centre'])} deg, nearly the same in both directions,"
+            f" {wide}{_late(form)}"
+        )
+    least = _NOTHING * max(abs(one) for one in sizes)
+    forward, reverse = ("none" if abs(one) < least else _more(one, unit) for one in sizes)
     return (
         f"friction that is another one in each direction at {_number(shape['centre'])} deg:"
         f" {forward} in forward motion, {reverse} in reverse, {wide}{_late(form)}"
