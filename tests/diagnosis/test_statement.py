@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from frictioncli.diagnosis.documents.cause_words import over_runs, words_for
 from frictioncli.diagnosis.documents.extended_document import ParameterRecord
-from frictioncli.diagnosis.documents.from_diagnosis import words_for
 from frictioncli.diagnosis.documents.parameters import statement
 from frictioncli.effects import BY_NAME
 from frictioncli.effects.dress_pack import PUSHING
@@ -91,3 +91,22 @@ def test_a_spring_that_pushes_the_joint_on_is_no_cable(stiffness, counted, by_lo
 
 def test_an_order_is_no_coefficient():
     assert "7" in said(BY_NAME["position_ripple"], (-2.0, 16.0))
+
+
+@pytest.mark.parametrize(
+    ("runs", "text"),
+    [(8, " From the first of 8 runs to the last this is 2.1 N·m."), (2, "")],
+)
+def test_a_drift_over_several_runs_is_stated_as_a_change_from_the_first_to_the_last(runs, text):
+    """Checks of an hour, in each of which friction grows by 0.3 N·m; a week between does not count.
+
+    The clock of the log goes on from one run to the next.
+    """
+    parameters = {
+        "rate": ParameterRecord(estimate=0.3, ci95=(0.2, 0.4), unit="N·m/h"),
+        "time_constant": ParameterRecord(estimate=1e6, ci95=None, unit="h"),
+    }
+    run = np.repeat(np.arange(runs), 10)
+    table = SimpleNamespace(run=run, clock=3600.0 * run + 360.0 * np.tile(np.arange(10), runs))
+    diagnosis = SimpleNamespace(base=SimpleNamespace(all_runs=table), torque_unit="N·m")
+    assert over_runs(diagnosis, parameters) == text

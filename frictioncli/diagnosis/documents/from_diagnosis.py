@@ -7,6 +7,7 @@ import numpy as np
 from msgspec import UNSET
 
 from frictioncli.diagnosis.data.gravity_document import gravity_document
+from frictioncli.diagnosis.documents.cause_words import over_runs, when_there, words_for
 from frictioncli.diagnosis.documents.detectable import detectable_sizes, undetectable_reasons
 from frictioncli.diagnosis.documents.document import (
     CauseRecord,
@@ -45,9 +46,7 @@ from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.timing_causes import DELAY, FILTER
 from frictioncli.diagnosis.settings import DiagnosisSettings
 from frictioncli.diagnosis.thermal.refine import LAG
-from frictioncli.effects import dress_pack, stribeck, torque_delay, torque_filter
-from frictioncli.effects.base import Effect
-from frictioncli.effects.history_text import history_text
+from frictioncli.effects import drift, torque_delay, torque_filter
 from frictioncli.model.document import PARAMETERS, FrictionModel, ParameterEstimate
 from frictioncli.model.friction import FrictionParameters
 from frictioncli.model.late_torque import FREED
@@ -208,6 +207,8 @@ def _record(
 ) -> CauseRecord:
     effect = cause.fit.effect
     said = statement(effect, parameters, words_for(diagnosis, effect, parameters))
+    if effect is drift.EFFECT:
+        said += over_runs(diagnosis, parameters)
     timing = diagnosis.timing if effect.name == DELAY else None
     if timing is not None and cause.effects == (FILTER,):
         effect = torque_filter.EFFECT
@@ -233,7 +234,7 @@ def _record(
         statement=said,
         claim=effect.signature.claim,
         equation=effect.equation,
-        when=_when(diagnosis, cause),
+        when=when_there(diagnosis, cause),
         parameters=parameters,
         size=cause.size,
         size_ci95=_size_interval(cause),
@@ -246,46 +247,9 @@ def _record(
     )
 
 
-def words_for(
-    diagnosis: Diagnosis, effect: Effect, parameters: Mapping[str, ParameterRecord]
-) -> str | None:
-    """Return the sentence on an effect where its own would mislead; None where it does not.
-
-    Parameters
-    ----------
-    diagnosis : Diagnosis
-        The diagnosis.
-    effect : Effect
-        The effect.
-    parameters : mapping of str to ParameterRecord
-        Its parameters.
-    """
-    slowest = float(np.min(diagnosis.base.table.speed))
-    if effect.name == stribeck.EFFECT.name and parameters["velocity"].estimate < slowest:
-        return stribeck.EXTRAPOLATED
-    if effect.name == dress_pack.EFFECT.name and _pushes(diagnosis, parameters["stiffness"]):
-        return dress_pack.PUSHING
-    return None
-
-
-def _pushes(diagnosis: Diagnosis, stiffness: ParameterRecord) -> bool:
-    """Return whether a spring certainly does not pull back; a load channel may count otherwise."""
-    if stiffness.ci95 is None or diagnosis.base.has_load_channel:
-        return False
-    return max(diagnosis.base.counted * bound for bound in stiffness.ci95) < 0
-
-
 def _seconds(found: RampEstimate) -> ParameterRecord:
     """Return a time that starts of moves and pairs together tell."""
     return ParameterRecord(estimate=found.value, ci95=(found.low, found.high), unit="s")
-
-
-def _when(diagnosis: Diagnosis, cause: Cause) -> str:
-    """Return the runs and hours in which a change was there; empty for what always is."""
-    if cause.fit.effect.moments is None:
-        return ""
-    runs = list(dict.fromkeys([*diagnosis.runs, *filter(None, [diagnosis.held_out])]))
-    return history_text(cause.fit.shape, diagnosis.base.all_runs, runs)
 
 
 def _size_interval(cause: Cause) -> tuple[float, float] | None:
