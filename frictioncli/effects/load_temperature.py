@@ -61,6 +61,7 @@ EFFECT = Effect(
             lower=-0.3,
             upper=0.1,
             description="Added friction at load torque 10 per 10 °C; negative if it falls",
+            of_square_load=True,
         ),
     ),
     basis=basis,

@@ -32,6 +32,7 @@ EFFECT = Effect(
             lower=-0.5,
             upper=0.5,
             description="Added friction at load torque 10 and 100 deg/s",
+            of_square_load=True,
         ),
     ),
     basis=basis,

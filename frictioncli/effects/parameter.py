@@ -33,6 +33,9 @@ class Parameter:
     within : str
         Name of another coefficient of the same effect, which is at least as large in amount; may be
         empty.
+    of_square_load : bool
+        Whether it is that of a torque that grows with the square of the load: on a joint with less
+        load more of it is possible.
     noun : str
         What it is called in a sentence; its name if empty.
     """
@@ -47,6 +50,7 @@ class Parameter:
     points: int = 10
     of_load: bool = False
     within: str = ""
+    of_square_load: bool = False
     noun: str = ""
 
     def __post_init__(self) -> None:

@@ -106,6 +106,20 @@ def test_what_physics_forbids_is_not_named(joint):
     assert found == "undetermined"
 
 
+@pytest.mark.parametrize("name", ["load_velocity", "load_temperature"])
+def test_bounds_of_the_square_of_the_load_grow_where_the_load_is_small(joint, name):
+    """At a tenth of the load, the same torque takes a hundred times the coefficient."""
+    most = float(np.max(np.abs(joint.table.load)))
+
+    def bound(load):
+        table = replace(joint.table, load=joint.table.load * load / most)
+        return physical_bounds(BY_NAME[name], replace(joint, table=table))[1][0]
+
+    assert bound(4.0) == pytest.approx(100 * bound(40.0))
+    assert bound(8.0) == pytest.approx(25 * bound(40.0))
+    assert bound(90.0) == bound(40.0)
+
+
 def test_bounds_in_torque_grow_with_the_friction_of_the_joint(joint):
     """A joint of 30 N·m may drift one and a half times as fast as one of 20 N·m or less."""
     drift = BY_NAME["drift"]

@@ -21,6 +21,10 @@ _USUAL_FRICTION = 20.0
 """Mean friction torque up to which the catalogue's bounds in units of torque hold; the bounds of a
 joint with more friction grow in proportion. [N·m]"""
 
+_USUAL_LOAD = 40.0
+"""Greatest load torque from which on those bounds hold for coefficients of its square; those of a
+joint with less load grow with its square. [N·m]"""
+
 _AT_ONCE = 8
 """Shapes whose rows are reduced together: those of more would not fit into a processor's cache."""
 
@@ -112,10 +116,14 @@ def physical_bounds(effect: Effect, problem: Problem) -> tuple[Array, Array]:
     effect : Effect
         Entry of the catalogue.
     problem : Problem
-        The joint's rows: bounds in units of torque grow with its friction.
+        The joint's rows: bounds in units of torque grow with its friction, and those of the square
+        of the load where that is small.
     """
     factor = max(float(np.mean(np.abs(problem.friction))) / _USUAL_FRICTION, 1.0)
     factors = np.array([factor if TORQUE in one.unit else 1.0 for one in effect.coefficients])
+    load = float(np.max(np.abs(problem.table.load), initial=0.0))
+    of_square = np.array([one.of_square_load for one in effect.coefficients])
+    factors = np.where(of_square, factors * max(_USUAL_LOAD / max(load, 1e-9), 1.0) ** 2, factors)
     lower = np.array([parameter.lower for parameter in effect.coefficients])
     upper = np.array([parameter.upper for parameter in effect.coefficients])
     of_load = effect.measurement & np.array([one.of_load for one in effect.coefficients])
