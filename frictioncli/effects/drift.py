@@ -60,13 +60,10 @@ EFFECT = Effect(
             " and the change is still there on the next cold start."
         ),
     ),
-    statement=(
-        "Friction changes steadily with the time logged, by {rate} at the start; the time between"
-        " runs does not count."
-    ),
+    statement="Friction changes steadily with the time logged, by {rate} at the start.",
     confounders=("run_in", "step_change", "thermal_lag"),
     experiment=(
-        "Return to the start temperature and repeat the first pairs; repeat them on the next day."
-        " One run alone cannot distinguish drift from slow noise."
+        "Return to the start temperature and repeat the first pairs; repeat them on the next day:"
+        " slow noise of one run does not go on."
     ),
 )

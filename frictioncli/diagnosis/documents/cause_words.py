@@ -39,7 +39,7 @@ def words_for(
 
 
 def over_runs(diagnosis: Diagnosis, parameters: Mapping[str, ParameterRecord]) -> str:
-    """Return by how much a drift changes friction from the first run to the last; empty for two.
+    """Return what a drift is over several runs; empty for one.
 
     A check every week logs minutes of motion; what is asked is the change from check to check.
 
@@ -53,13 +53,14 @@ def over_runs(diagnosis: Diagnosis, parameters: Mapping[str, ParameterRecord]) -
     table = diagnosis.base.all_runs
     runs = np.unique(table.run)
     if len(runs) < _SEVERAL_RUNS:
-        return ""
+        return "" if len(runs) == 1 else " The time between runs does not count."
     shape = {"time_constant": parameters["time_constant"].estimate}
     torque = drift.EFFECT.evaluate(table, shape).friction[:, 0] * parameters["rate"].estimate
     first, last = (float(np.mean(torque[table.run == run])) for run in (runs[0], runs[-1]))
     change = number_text(last - first, 2)
     return (
-        f" From the first of {len(runs)} runs to the last this is {change} {diagnosis.torque_unit}."
+        f" The time between runs does not count; from the first of {len(runs)} runs to the last it"
+        f" is {change} {diagnosis.torque_unit}."
     )
 
 
