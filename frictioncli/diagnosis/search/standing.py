@@ -19,7 +19,6 @@ from frictioncli.diagnosis.search.confounded import (
 )
 from frictioncli.diagnosis.search.doubtful_steps import doubtful_change
 from frictioncli.diagnosis.search.margin import channel_margin
-from frictioncli.diagnosis.search.misread_torque import misread_torque_in
 from frictioncli.diagnosis.search.possible import (
     ON_BOUND,
     beyond_bounds,
@@ -28,6 +27,7 @@ from frictioncli.diagnosis.search.possible import (
     standard_errors,
     undetermined,
 )
+from frictioncli.diagnosis.search.simpler_laws import simpler_law
 from frictioncli.effects.base import Effect
 from frictioncli.effects.position_ripple import EFFECT as POSITION_RIPPLE
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
@@ -150,7 +150,7 @@ def _judged(cause: Cause, problem: Problem, margin: float, alpha: float) -> Caus
     doubt = _impossible(cause, problem)
     doubt = doubt or confounded(cause.fit.effect, problem)
     doubt = doubt or doubtful_change(cause.fit, problem)
-    doubt = doubt or misread_torque_in(cause.fit, problem) or hardly_repeats(cause.fit, problem)
+    doubt = doubt or simpler_law(cause.fit, problem) or hardly_repeats(cause.fit, problem)
     if doubt:
         return replace(cause, standing="undetermined", reason=doubt)
     if low > margin:

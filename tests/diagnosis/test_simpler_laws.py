@@ -1,11 +1,16 @@
-"""Torque that is misread at high torque, and friction that follows how fast a joint warms."""
+"""Causes that another law explains as well: misread torque, a kink, and how fast a joint warms."""
 
 import numpy as np
 import pytest
 
 from frictioncli.diagnosis.diagnose import diagnose_joint
+from frictioncli.diagnosis.search.precomputed import Precomputed
+from frictioncli.diagnosis.search.simpler_laws import simpler_law
+from frictioncli.diagnosis.search.step import Step
 from frictioncli.diagnosis.settings import DiagnosisSettings
+from frictioncli.effects import BY_NAME
 from tests.diagnosis.clean_joints import clean_days
+from tests.diagnosis.dense_noise import problem
 from tests.equation_16 import SPEEDS
 
 
@@ -69,3 +74,25 @@ def test_an_asymmetry_keeps_its_name():
     torques = clean_days(4, noise=0.1, pair=0.05, drift=0.05)
     torques["load_torque"] += 4.0 * np.sqrt(torques["speed"] / max(SPEEDS))
     assert found_in(torques) == {"direction_asymmetry"}
+
+
+RIPPLE = BY_NAME["position_ripple"]
+
+
+def fitted_ripple(friction):
+    """Return the ripple of at most three periods in the stroke that fits best, and its joint."""
+    joint = problem(3, friction=friction)
+    step = Step.of(Precomputed.of(joint), [])
+    stroke = float(np.ptp(joint.table.position))
+    fits = [step.fitted(RIPPLE, {"order": 360.0 * n / stroke}) for n in (1.6, 1.9, 2.2, 2.6, 2.9)]
+    return max(fits, key=lambda one: one.statistic), joint
+
+
+def test_a_ripple_of_two_periods_that_a_kink_at_zero_load_explains_is_none():
+    ripple, joint = fitted_ripple(lambda rows: 0.15 * np.abs(rows.load_torque))
+    assert "kink at zero load" in simpler_law(ripple, joint)
+
+
+def test_a_ripple_of_few_periods_that_is_one_is_no_kink():
+    ripple, joint = fitted_ripple(lambda rows: 1.5 * np.sin(np.radians(6.5 * rows.position + 40)))
+    assert simpler_law(ripple, joint) == ""
