@@ -144,7 +144,7 @@ def _diagnosed(
         result = found_causes(judging, effects, search)
     found, lag = result.search, result.lag
     problem, new = result.judging.problem, result.judging.new
-    named = named_causes(result.judging, result.judged)
+    named = named_causes(result.judging, result.judged, lag)
     causes, step = named.causes, named.step
     noticed = corrected_without_name(named.others, causes, problem)
     extension = gain = None

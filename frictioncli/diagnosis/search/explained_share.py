@@ -9,15 +9,14 @@ from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import RANK
 from frictioncli.diagnosis.fit.extension import misfits, refit
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.fit.weighted_fit import WeightedFit
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import predicts_new_run
 from frictioncli.diagnosis.search.judging import Judging
 from frictioncli.diagnosis.search.step import Step
-from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
+from frictioncli.diagnosis.thermal.refine import LAG, RefinedLag, settled
 from frictioncli.linear_algebra import least_squares_residual
 
-_LEAST = 0.45
+_LEAST = 0.4
 """Least share of the mean square that the base misses beside noise which right causes explain."""
 
 _LITTLE = (
@@ -26,7 +25,13 @@ _LITTLE = (
 )
 
 
-def explains_little(causes: Sequence[Cause], step: Step, judging: Judging, floor: float) -> str:
+def explains_little(
+    causes: Sequence[Cause],
+    step: Step,
+    judging: Judging,
+    floor: float,
+    lag: RefinedLag | None = None,
+) -> str:
     """Return why properties of the joint may be a part of something else; empty if not.
 
     What no catalogue lists looks a little like one of its entries, or like two together. These then
@@ -44,17 +49,16 @@ def explains_little(causes: Sequence[Cause], step: Step, judging: Judging, floor
         Rows and demands.
     floor : float
         RMS of the noise that is new with each pair. [N·m]
+    lag : RefinedLag, optional
+        The lag of the gear, where it is one of the causes.
     """
-    measured, measured_new = judging.measured
-    predicting = [one for one in causes if _predicts(one)]
-    if measured_new is None or judging.new is None or not predicting:
+    _, base = judging.measured
+    if base is None or judging.new is None or not any(_predicts(one) for one in causes):
         return ""
     if any(one.fit.effect.moments is not None for one in causes):
         return ""
-    weighted_fit = step.predicting_fit()
-    of_log = [one.fit for one in causes if one.fit.effect.measurement]
-    before = _missed(measured, measured_new, weighted_fit, of_log)
-    after = _missed(judging.problem, judging.new, weighted_fit, [one.fit for one in causes])
+    before = _rms(base, base.friction_misfit, base.load_misfit)
+    after = _rms(judging.new, *_missed([one.fit for one in causes], step, judging, lag))
     left = np.square(after) - floor**2
     beside_noise = np.square(before) - floor**2
     if left[0] <= judging.margin**2 or np.any(beside_noise <= 0.0):
@@ -63,18 +67,21 @@ def explains_little(causes: Sequence[Cause], step: Step, judging: Judging, floor
     return _LITTLE.format(share=100 * max(share, 0.0)) if share < _LEAST else ""
 
 
-def _predicts(cause: Cause) -> bool:
-    """Return whether a cause is a property of the joint that the new run should have."""
-    effect = cause.fit.effect
-    holds = cause.holds_on_new_run is not False
-    return holds and (predicts_new_run(effect) or effect.name == THERMAL_LAG.name)
-
-
 def _missed(
-    problem: Problem, new: Problem, weighted_fit: WeightedFit, fits: Sequence[EffectFit]
-) -> Array:
-    """Return the RMS misfit of a new run, and that beside what days differ by, shape (2,) [N·m]."""
-    friction, load = misfits(new, refit(problem, weighted_fit, fits))
+    fits: Sequence[EffectFit], step: Step, judging: Judging, lag: RefinedLag | None
+) -> tuple[Array, Array]:
+    """Return the misfit of the new run with some effects, shape (rows,) each [N·m]."""
+    weighted_fit = step.predicting_fit()
+    if lag is not None and LAG in {one.effect.name for one in fits}:
+        about, extension = settled(lag, fits, weighted_fit)
+        assert about.new is not None  # there is one wherever a run was held out
+        return misfits(about.new, extension)
+    assert judging.new is not None
+    return misfits(judging.new, refit(judging.problem, weighted_fit, fits))
+
+
+def _rms(new: Problem, friction: Array, load: Array) -> Array:
+    """Return the RMS of a misfit, and that beside what days differ by, shape (2,) [N·m]."""
     constant = np.ones((len(load), 1))
     viscous = new.table.viscous * np.sqrt(new.table.speed)
     beside = (
@@ -83,3 +90,10 @@ def _missed(
     )
     squares = new.squared(friction, load), new.squared(*beside)
     return np.sqrt(np.mean(squares, axis=1))
+
+
+def _predicts(cause: Cause) -> bool:
+    """Return whether a cause is a property of the joint that the new run should have."""
+    effect = cause.fit.effect
+    holds = cause.holds_on_new_run is not False
+    return holds and (predicts_new_run(effect) or effect.name == LAG)

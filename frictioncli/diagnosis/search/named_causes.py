@@ -22,6 +22,7 @@ from frictioncli.diagnosis.search.without_a_name import (
     beyond_doubt_without_a_name,
     change_over_time,
 )
+from frictioncli.diagnosis.thermal.refine import RefinedLag
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 
@@ -53,7 +54,9 @@ class NamedCauses:
     step: Step
 
 
-def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
+def named_causes(
+    judging: Judging, first: JudgedCauses, lag: RefinedLag | None = None
+) -> NamedCauses:
     """Return the causes that are named, and all that stands beside them alone.
 
     Parameters
@@ -62,6 +65,8 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
         Rows and demands.
     first : JudgedCauses
         What the search found, judged.
+    lag : RefinedLag, optional
+        The lag of the gear, where it is one of the causes.
     """
     step = first.found.step
     judged, structure = judging.without_parts(first)
@@ -87,10 +92,10 @@ def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
         structure = change_over_time(there)
     causes = rivalled.causes
     if structure is None:
-        reason = explains_little(causes, rivalled.step, judging, judged.found.floor)
+        reason = explains_little(causes, rivalled.step, judging, judged.found.floor, lag)
         lost = {one.fit.effect.name for one in causes if not one.fit.effect.measurement}
         if reason:
-            return named_causes(judging, first.without_names(lost, "visible", reason))
+            return named_causes(judging, first.without_names(lost, "visible", reason), lag)
     return NamedCauses(
         causes=causes,
         others=(*others, *lost_on_the_way, *rivalled.replaced),
