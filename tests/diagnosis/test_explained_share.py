@@ -16,7 +16,8 @@ from tests.diagnosis.dense_noise import problem
 
 FLOOR = 0.1
 STEP = SimpleNamespace(predicting_fit=lambda: None)
-JUDGING = SimpleNamespace(problem="seen", new="new", measured=("seen", "new"), margin=0.1)
+BASE = SimpleNamespace(friction_misfit="missed", load_misfit="missed")
+JUDGING = SimpleNamespace(problem="seen", new="new", measured=("seen", BASE), margin=0.1)
 
 
 def cause(name, reason="", p_value=1e-20):
@@ -36,12 +37,12 @@ def cause(name, reason="", p_value=1e-20):
 
 def reason(monkeypatch, before, after, *names, judging=JUDGING):
     """Return the reason where the causes leave ``after`` of ``before``, whole and beside levels."""
-
-    def missed(problem, new, weighted_fit, fits):
-        properties = [one for one in fits if not one.effect.measurement]
-        return np.array(after if properties else before, float)
-
-    monkeypatch.setattr(explained_share, "_missed", missed)
+    monkeypatch.setattr(explained_share, "_missed", lambda *_: ("left", "left"))
+    monkeypatch.setattr(
+        explained_share,
+        "_rms",
+        lambda new, friction, load: np.array(after if friction == "left" else before, float),
+    )
     return explains_little([cause(one) for one in names], STEP, judging, FLOOR)
 
 
@@ -79,16 +80,14 @@ def test_nothing_is_said_without_a_held_out_run(monkeypatch):
     assert reason(monkeypatch, (0.5, 0.5), (0.45, 0.45), "drift", judging=alone) == ""
 
 
-def test_levels_by_which_days_differ_are_taken_off(monkeypatch):
+def test_levels_by_which_days_differ_are_taken_off():
     """Coulomb friction by a constant, viscous friction by a share, and the zero of the load."""
     new = problem(1)
     wave = 0.3 * np.sin(np.arange(len(new.load)))
     viscous = new.table.viscous * np.sqrt(new.table.speed)
-    both = 0.7 + 0.05 * viscous + wave, np.full(len(new.load), 0.4)
-    monkeypatch.setattr(explained_share, "misfits", lambda *_: both)
-    monkeypatch.setattr(explained_share, "refit", lambda *_: None)
-    whole, beside = explained_share._missed(new, new, None, ())
-    assert whole == pytest.approx(np.sqrt(np.mean(np.square(both[0]) + 0.16)))
+    friction, load = 0.7 + 0.05 * viscous + wave, np.full(len(new.load), 0.4)
+    whole, beside = explained_share._rms(new, friction, load)
+    assert whole == pytest.approx(np.sqrt(np.mean(np.square(friction) + 0.16)))
     design = np.column_stack([np.ones_like(viscous), viscous])
     left = wave - design @ np.linalg.lstsq(design, wave, rcond=None)[0]
     assert beside == pytest.approx(np.sqrt(np.mean(np.square(left))))
