@@ -5,7 +5,7 @@ The misfit of the base model (16) plus gravity is searched for effects of the ca
 of the lack of fit tells what no effect explains; the gain is measured on a held-out run, if any.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -16,6 +16,7 @@ from frictioncli.diagnosis.data.worst_misfits import worst_misfits
 from frictioncli.diagnosis.empirical.estimate import as_structure, empirical_term
 from frictioncli.diagnosis.empirical.on_new_run import structure_on_new_run
 from frictioncli.diagnosis.empirical.unexplained import unexplained
+from frictioncli.diagnosis.explained_share import without_small_parts
 from frictioncli.diagnosis.fit.extension import Extension, extend, rms_misfit
 from frictioncli.diagnosis.fit.gain import measured_gain
 from frictioncli.diagnosis.found_causes import found_causes
@@ -89,8 +90,8 @@ def diagnose_joint(
     """
     known, lost = with_temperature(torques, temperature)
     found = without_needless_steps(
-        lambda catalogue: _diagnosed(
-            known, temperature, torque_unit, settings, catalogue, ramps, doubt
+        lambda catalogue: without_small_parts(
+            partial(_diagnosed, known, temperature, torque_unit, settings, catalogue, ramps, doubt)
         ),
         effects,
     )
@@ -105,8 +106,9 @@ def _diagnosed(
     effects: Sequence[Effect],
     ramps: RampLog | None,
     doubt: str,
+    without_name: Mapping[str, str],
 ) -> Diagnosis:
-    """Return the diagnosis of one joint with one catalogue."""
+    """Return the diagnosis of one joint with one catalogue, some effects without a name."""
     joint = int(torques["joint"].iloc[0])
     runs = runs_in_order(torques)
     held_out = runs[-1] if len(runs) > 1 else None
@@ -144,7 +146,10 @@ def _diagnosed(
         result = found_causes(judging, effects, search)
     found, lag = result.search, result.lag
     problem, new = result.judging.problem, result.judging.new
-    named = named_causes(result.judging, result.judged, lag)
+    judged = result.judged
+    for name, reason in without_name.items():
+        judged = judged.without_names({name}, "visible", reason)
+    named = named_causes(result.judging, judged)
     causes, step = named.causes, named.step
     noticed = corrected_without_name(named.others, causes, problem)
     extension = gain = None

@@ -6,78 +6,107 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from frictioncli.diagnosis.explained_share import explains_little, without_small_parts
+from frictioncli.diagnosis.fit.gain import Gain, _rms_beside_days
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.search import explained_share
 from frictioncli.diagnosis.search.cause import Cause
-from frictioncli.diagnosis.search.explained_share import explains_little
 from frictioncli.diagnosis.search.verdict import visible_causes
 from frictioncli.effects import BY_NAME
 from tests.diagnosis.dense_noise import problem
 
 FLOOR = 0.1
-STEP = SimpleNamespace(predicting_fit=lambda: None)
-BASE = SimpleNamespace(friction_misfit="missed", load_misfit="missed")
-JUDGING = SimpleNamespace(problem="seen", new="new", measured=("seen", BASE), margin=0.1)
+GAIN = Gain(
+    basis="new_run",
+    before=0.5,
+    after=np.sqrt(0.17),
+    reduction=0.2,
+    interval=(0.1, 0.3),
+    floor=FLOOR,
+    beside_days=(0.5, np.sqrt(0.17)),
+)
+"""The causes explain (0.25 - 0.17) / (0.25 - 0.01) of the mean square beside the noise."""
 
 
-def cause(name, reason="", p_value=1e-20):
+def cause(name, reason="", holds=True):
     width = len(BY_NAME[name].coefficients)
     return Cause(
         fit=EffectFit(BY_NAME[name], {}, np.ones(width), np.eye(width), 100.0),
-        test=SimpleNamespace(p_value=p_value),
+        test=SimpleNamespace(p_value=1e-20),
         effects=(name,),
         probabilities={name: 1.0},
         size=1.0,
         visible=1.0,
         standing="named",
         reason=reason,
-        holds_on_new_run=True,
+        holds_on_new_run=holds,
     )
 
 
-def reason(monkeypatch, before, after, *names, judging=JUDGING):
-    """Return the reason where the causes leave ``after`` of ``before``, whole and beside levels."""
-    monkeypatch.setattr(explained_share, "_missed", lambda *_: ("left", "left"))
-    monkeypatch.setattr(
-        explained_share,
-        "_rms",
-        lambda new, friction, load: np.array(after if friction == "left" else before, float),
-    )
-    return explains_little([cause(one) for one in names], STEP, judging, FLOOR)
+def diagnosis(*causes, gain=GAIN, structure=None):
+    return SimpleNamespace(causes=causes, gain=gain, floor=FLOOR, margin=0.1, structure=structure)
+
+
+PACK, DELAY = cause("dress_pack"), cause("torque_delay")
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "told"),
+    ("whole", "beside_days", "told"),
     [
-        # (0.25 - 0.17) / (0.25 - 0.01) of the mean square
-        ((0.5, 0.5), (np.sqrt(0.17), np.sqrt(0.17)), "33 %"),
-        ((0.5, 0.5), (0.2, 0.2), ""),
+        ((0.5, np.sqrt(0.17)), (0.5, np.sqrt(0.17)), "33 %"),
+        # what they make worse is no share
+        ((0.5, 0.6), (0.5, 0.6), "0 %"),
+        ((0.5, 0.2), (0.5, 0.2), ""),
         # days differ in their level, beside which the cause explains nearly all
-        ((0.9, 0.5), (0.8, 0.15), ""),
+        ((0.9, 0.8), (0.5, 0.15), ""),
         # what remains is below the margin
-        ((0.15, 0.15), (0.14, 0.14), ""),
+        ((0.15, 0.14), (0.15, 0.14), ""),
         # the base misses nothing but noise
-        ((0.09, 0.09), (0.3, 0.3), ""),
+        ((0.09, 0.3), (0.09, 0.3), ""),
     ],
 )
-def test_causes_that_leave_most_of_it_may_be_parts_of_something_else(
-    monkeypatch, before, after, told
-):
-    found = reason(monkeypatch, before, after, "dress_pack", "torque_delay")
+def test_causes_that_leave_most_of_it_may_be_parts_of_something_else(whole, beside_days, told):
+    gain = replace(GAIN, before=whole[0], after=whole[1], beside_days=beside_days)
+    found = explains_little(diagnosis(PACK, DELAY, gain=gain))
     assert told in found
     assert bool(found) == bool(told)
 
 
 @pytest.mark.parametrize(
-    "names", [("payload_change",), ("step_change", "drift"), ("torque_delay",)]
+    "causes",
+    [
+        (),
+        (DELAY,),
+        # a change has its history there
+        (cause("payload_change"),),
+        (cause("step_change"), PACK),
+        # what did not last explains nothing there
+        (cause("drift", holds=False),),
+    ],
 )
-def test_changes_and_the_measurement_are_not_judged_so(monkeypatch, names):
-    assert reason(monkeypatch, (0.5, 0.5), (0.45, 0.45), *names) == ""
+def test_the_measurement_and_changes_are_not_judged_so(causes):
+    assert explains_little(diagnosis(*causes)) == ""
 
 
-def test_nothing_is_said_without_a_held_out_run(monkeypatch):
-    alone = SimpleNamespace(problem="seen", new=None, measured=("seen", None), margin=0.1)
-    assert reason(monkeypatch, (0.5, 0.5), (0.45, 0.45), "drift", judging=alone) == ""
+def test_nor_is_a_diagnosis_with_structure_or_without_a_held_out_run():
+    assert explains_little(diagnosis(PACK)) != ""
+    assert explains_little(diagnosis(PACK, structure="along time")) == ""
+    assert explains_little(diagnosis(PACK, gain=None)) == ""
+    assert explains_little(diagnosis(PACK, gain=replace(GAIN, basis="within_run"))) == ""
+
+
+def test_the_diagnosis_is_repeated_without_their_names():
+    asked = []
+
+    def diagnose(without_name):
+        asked.append(without_name)
+        return diagnosis(PACK, DELAY) if not without_name else diagnosis(DELAY)
+
+    found = without_small_parts(diagnose)
+    assert found.causes == (DELAY,)
+    (none, names) = asked
+    assert none == {}
+    assert list(names) == ["dress_pack"]
+    assert "33 %" in names["dress_pack"]
 
 
 def test_levels_by_which_days_differ_are_taken_off():
@@ -85,9 +114,7 @@ def test_levels_by_which_days_differ_are_taken_off():
     new = problem(1)
     wave = 0.3 * np.sin(np.arange(len(new.load)))
     viscous = new.table.viscous * np.sqrt(new.table.speed)
-    friction, load = 0.7 + 0.05 * viscous + wave, np.full(len(new.load), 0.4)
-    whole, beside = explained_share._rms(new, friction, load)
-    assert whole == pytest.approx(np.sqrt(np.mean(np.square(friction) + 0.16)))
+    beside = _rms_beside_days(new, 0.7 + 0.05 * viscous + wave, np.full(len(new.load), 0.4))
     design = np.column_stack([np.ones_like(viscous), viscous])
     left = wave - design @ np.linalg.lstsq(design, wave, rcond=None)[0]
     assert beside == pytest.approx(np.sqrt(np.mean(np.square(left))))

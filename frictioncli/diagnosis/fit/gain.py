@@ -6,7 +6,9 @@ import numpy as np
 
 from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
+from frictioncli.diagnosis.fit.columns import RANK
 from frictioncli.diagnosis.fit.extension import Extension, misfits
+from frictioncli.linear_algebra import least_squares_residual
 
 BLOCK = 12
 """Pairs per block of the bootstrap: the misfits of neighbouring pairs are not independent."""
@@ -36,6 +38,8 @@ class Gain:
         RMS of the noise that is new with each pair, which no model can predict. [N·m]
     without_level : (float, float), optional
         The misfits before and after, each without its mean in both channels. [N·m]
+    beside_days : (float, float), optional
+        The same without what days differ by: the mean in both channels, and viscous friction. [N·m]
     """
 
     basis: str
@@ -45,6 +49,7 @@ class Gain:
     interval: tuple[float, float]
     floor: float
     without_level: tuple[float, float] | None = None
+    beside_days: tuple[float, float] | None = None
 
 
 def measured_gain(
@@ -77,7 +82,8 @@ def measured_gain(
     before, after = (problem.squared(*both) for both in missed)
     gain = gain_of(problem, before, after, basis=basis, floor=floor, seed=seed)
     first, last = (rms_about_mean(problem, *both) for both in missed)
-    return replace(gain, without_level=(first, last))
+    before_days, after_days = (_rms_beside_days(problem, *both) for both in missed)
+    return replace(gain, without_level=(first, last), beside_days=(before_days, after_days))
 
 
 def gain_of(
@@ -120,6 +126,17 @@ def rms_about_mean(problem: Problem, friction: Array, load: Array) -> float:
         The misfit in both channels. [N·m]
     """
     square = problem.squared(friction - np.mean(friction), load - np.mean(load))
+    return float(np.sqrt(np.mean(square)))
+
+
+def _rms_beside_days(problem: Problem, friction: Array, load: Array) -> float:
+    """Return the RMS of a misfit without its mean, and without viscous friction [N·m]."""
+    constant = np.ones((len(load), 1))
+    viscous = problem.table.viscous * np.sqrt(problem.table.speed)
+    square = problem.squared(
+        least_squares_residual(np.column_stack([constant, viscous]), friction, tolerance=RANK),
+        least_squares_residual(constant, load, tolerance=RANK),
+    )
     return float(np.sqrt(np.mean(square)))
 
 

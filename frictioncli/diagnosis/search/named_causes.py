@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from frictioncli.diagnosis.ramps.timing_rivals import TimingRivals
 from frictioncli.diagnosis.search.cause import Cause
 from frictioncli.diagnosis.search.cause_selection import BEYOND_DOUBT
-from frictioncli.diagnosis.search.explained_share import explains_little
 from frictioncli.diagnosis.search.judging import JudgedCauses, Judging, names_of
 from frictioncli.diagnosis.search.measurement import measurement_causes
 from frictioncli.diagnosis.search.payload_rivals import with_payload_rivals
@@ -22,7 +21,6 @@ from frictioncli.diagnosis.search.without_a_name import (
     beyond_doubt_without_a_name,
     change_over_time,
 )
-from frictioncli.diagnosis.thermal.refine import RefinedLag
 from frictioncli.effects.thermal_lag import EFFECT as THERMAL_LAG
 
 
@@ -54,9 +52,7 @@ class NamedCauses:
     step: Step
 
 
-def named_causes(
-    judging: Judging, first: JudgedCauses, lag: RefinedLag | None = None
-) -> NamedCauses:
+def named_causes(judging: Judging, first: JudgedCauses) -> NamedCauses:
     """Return the causes that are named, and all that stands beside them alone.
 
     Parameters
@@ -65,8 +61,6 @@ def named_causes(
         Rows and demands.
     first : JudgedCauses
         What the search found, judged.
-    lag : RefinedLag, optional
-        The lag of the gear, where it is one of the causes.
     """
     step = first.found.step
     judged, structure = judging.without_parts(first)
@@ -90,14 +84,8 @@ def named_causes(
     there = beyond_doubt_without_a_name(first.causes, names_of(judged.named), judging.margin)
     if structure is None and all(one.fit.effect.measurement for one in rivalled.causes):
         structure = change_over_time(there)
-    causes = rivalled.causes
-    if structure is None:
-        reason = explains_little(causes, rivalled.step, judging, judged.found.floor, lag)
-        lost = {one.fit.effect.name for one in causes if not one.fit.effect.measurement}
-        if reason:
-            return named_causes(judging, first.without_names(lost, "visible", reason), lag)
     return NamedCauses(
-        causes=causes,
+        causes=rivalled.causes,
         others=(*others, *lost_on_the_way, *rivalled.replaced),
         structure=structure,
         measurement=judged.found.measurement,
