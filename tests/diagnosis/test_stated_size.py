@@ -136,7 +136,8 @@ def test_what_may_be_below_the_margin_does_not_blur_the_others():
     for one in (there, imitation):
         fits.append(Step.of(precomputed, fits).fitted(one, {}))
     step = Step.of(precomputed, fits)
-    causes = [replace(cause(), fit=fit, effects=(fit.effect.name,)) for fit in fits]
+    found = cause(interval=(0.0, 0.9))
+    causes = [replace(found, fit=fit, effects=(fit.effect.name,)) for fit in fits]
     extension = extend(joint, step.predicting_fit(), fits)
     together = sizes_in_model(causes, extension, step, [], joint)
     kept, gone = sizes_beside_each_other(causes, step, [], joint, 0.2)
