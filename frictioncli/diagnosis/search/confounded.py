@@ -173,8 +173,20 @@ def hardly_repeats(fit: EffectFit, problem: Problem) -> str:
     """
     if fit.effect is not POSITION_RIPPLE:
         return ""
-    periods = fit.shape["order"] * float(np.ptp(problem.table.position)) / 360.0
-    return _LOOKS_LIKE_SMOOTH if periods < _LEAST_SEEN else ""
+    return _LOOKS_LIKE_SMOOTH if periods_seen(fit, problem) < _LEAST_SEEN else ""
+
+
+def periods_seen(ripple: EffectFit, problem: Problem) -> float:
+    """Return how many periods of a ripple the measured angles span.
+
+    Parameters
+    ----------
+    ripple : EffectFit
+        The ripple, with its order.
+    problem : Problem
+        The joint's rows.
+    """
+    return ripple.shape["order"] * float(np.ptp(problem.table.position)) / 360.0
 
 
 def without_forms_of_ends(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:

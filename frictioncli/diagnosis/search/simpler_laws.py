@@ -12,6 +12,7 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import RANK, base_rows
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
+from frictioncli.diagnosis.search.confounded import periods_seen
 from frictioncli.effects.base import Channel
 from frictioncli.effects.direction_asymmetry import EFFECT as DIRECTION_ASYMMETRY
 from frictioncli.effects.dress_pack import EFFECT as DRESS_PACK
@@ -52,7 +53,7 @@ def simpler_law(fit: EffectFit, problem: Problem) -> str:
         return ""
     if fit.effect.name in _OF_LOAD and _explain(_misread(problem), fit, problem, "load"):
         return _MISREAD
-    if fit.effect is POSITION_RIPPLE and _periods(fit, problem) < _FEW_PERIODS:
+    if fit.effect is POSITION_RIPPLE and periods_seen(fit, problem) < _FEW_PERIODS:
         kink = np.abs(problem.table.load)
         return _KINK if _explain([kink], fit, problem, "friction", _NEARLY) else ""
     return ""
@@ -73,10 +74,6 @@ def _misread(problem: Problem) -> Iterable[Array]:
     torques = table.load + table.friction, table.load - table.friction
     for power in _POWERS:
         yield np.sum([one * np.abs(one) ** power for one in torques], axis=0)
-
-
-def _periods(fit: EffectFit, problem: Problem) -> float:
-    return fit.shape["order"] * float(np.ptp(problem.table.position)) / 360.0
 
 
 def _explain(
