@@ -57,6 +57,19 @@ def orders(*, order: float) -> tuple[float, ...]:
     return order, 2 * order
 
 
+def periods_seen(table: EffectTable, *, order: float) -> float:
+    """Return how many periods of a ripple the measured angles span.
+
+    Parameters
+    ----------
+    table : EffectTable
+        Pairs and angle bins.
+    order : float
+        Periods per turn. [1/turn]
+    """
+    return order * float(np.ptp(table.position)) / 360.0
+
+
 EFFECT = Effect(
     name="position_ripple",
     summary="Friction varies periodically with the angle.",

@@ -17,6 +17,7 @@ from frictioncli.effects.backlash import EFFECT as BACKLASH
 from frictioncli.effects.base import Effect
 from frictioncli.effects.inertia import EFFECT as INERTIA
 from frictioncli.effects.position_ripple import EFFECT as POSITION_RIPPLE
+from frictioncli.effects.position_ripple import periods_seen
 from frictioncli.effects.reversal_transient import EFFECT as REVERSAL_TRANSIENT
 from frictioncli.wording import in_words
 
@@ -173,20 +174,7 @@ def hardly_repeats(fit: EffectFit, problem: Problem) -> str:
     """
     if fit.effect is not POSITION_RIPPLE:
         return ""
-    return _LOOKS_LIKE_SMOOTH if periods_seen(fit, problem) < _LEAST_SEEN else ""
-
-
-def periods_seen(ripple: EffectFit, problem: Problem) -> float:
-    """Return how many periods of a ripple the measured angles span.
-
-    Parameters
-    ----------
-    ripple : EffectFit
-        The ripple, with its order.
-    problem : Problem
-        The joint's rows.
-    """
-    return ripple.shape["order"] * float(np.ptp(problem.table.position)) / 360.0
+    return _LOOKS_LIKE_SMOOTH if periods_seen(problem.table, **fit.shape) < _LEAST_SEEN else ""
 
 
 def without_forms_of_ends(causes: Sequence[Cause], problem: Problem) -> tuple[Cause, ...]:

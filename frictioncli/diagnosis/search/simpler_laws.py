@@ -12,11 +12,11 @@ from frictioncli.arrays import Array
 from frictioncli.diagnosis.data.problem import Problem
 from frictioncli.diagnosis.fit.columns import RANK, base_rows
 from frictioncli.diagnosis.fit.hypotheses import EffectFit
-from frictioncli.diagnosis.search.confounded import periods_seen
 from frictioncli.effects.base import Channel
 from frictioncli.effects.direction_asymmetry import EFFECT as DIRECTION_ASYMMETRY
 from frictioncli.effects.dress_pack import EFFECT as DRESS_PACK
 from frictioncli.effects.position_ripple import EFFECT as POSITION_RIPPLE
+from frictioncli.effects.position_ripple import periods_seen
 from frictioncli.linear_algebra import least_squares_residual
 
 _OF_LOAD = frozenset({DIRECTION_ASYMMETRY.name, DRESS_PACK.name})
@@ -53,7 +53,7 @@ def simpler_law(fit: EffectFit, problem: Problem) -> str:
         return ""
     if fit.effect.name in _OF_LOAD and _explain(_misread(problem), fit, problem, "load"):
         return _MISREAD
-    if fit.effect is POSITION_RIPPLE and periods_seen(fit, problem) < _FEW_PERIODS:
+    if fit.effect is POSITION_RIPPLE and periods_seen(problem.table, **fit.shape) < _FEW_PERIODS:
         kink = np.abs(problem.table.load)
         return _KINK if _explain([kink], fit, problem, "friction", _NEARLY) else ""
     return ""
