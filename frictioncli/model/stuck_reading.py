@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from frictioncli.arrays import Array, Flags, Indices
+from frictioncli.arrays import Array, Flags
 
 _PAIRS = 5
 """Least number of pairs in which the reading stands still."""
@@ -54,19 +54,12 @@ def is_stuck(time: Array, reading: Array) -> Flags:
         own, after = known[begin : end + 1], known[end + 1]
         if len(own) < _PAIRS or time[own[-1]] - time[own[0]] < _SECONDS:
             continue
-        elsewhere = np.setdiff1d(known, own)
-        rate = max(
-            (_greatest_rate(time[part], reading[part]) for part in _sides(elsewhere, after)),
-            default=0.0,
-        )
+        # no rate is taken across the stretch
+        sides = known[:begin], known[end + 1 :]
+        rate = max(_greatest_rate(time[side], reading[side]) for side in sides)
         possible = rate * (time[after] - time[own[-1]]) + _JUMP
         stuck[own] = abs(reading[after] - reading[own[0]]) > possible
     return stuck
-
-
-def _sides(pairs: Indices, after: int) -> tuple[Indices, Indices]:
-    """Return the pairs before and after a stretch, across which no rate is taken."""
-    return pairs[pairs < after], pairs[pairs >= after]
 
 
 def _greatest_rate(time: Array, reading: Array) -> float:

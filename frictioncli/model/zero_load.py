@@ -81,7 +81,7 @@ def with_temperature(rows: pd.DataFrame, kind: str) -> tuple[pd.DataFrame, LeftO
     read = reading.notna()
     if not read.any():
         return rows, LeftOut()
-    stuck = _with_stuck_reading(rows.assign(reading=reading))
+    stuck = _with_stuck_reading(rows[[*PAIR_KEY, "time"]].assign(reading=reading))
     usable = read & ~stuck
     if usable.all() or not usable.any():
         return rows, LeftOut()
